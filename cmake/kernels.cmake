@@ -1,0 +1,1 @@
+# src/kernels is compiled once per instruction set.

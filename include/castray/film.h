@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "castray/image.h"
+#include "castray/vec.h"
+
+namespace castray {
+
+/// The window x0 <= x < x1, y0 <= y < y1 of a full image of full_width x full_height pixels.
+struct Window {
+  int full_width = 0, full_height = 0;
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  int width() const { return x1 - x0; }
+  int height() const { return y1 - y0; }
+  friend bool operator==(const Window&, const Window&) = default;
+};
+
+/// Sample indices first <= i < first + count.
+struct SampleRange {
+  std::uint64_t first = 0, count = 0;
+  friend bool operator==(const SampleRange&, const SampleRange&) = default;
+};
+
+/// What a render adds up: per pixel the sum of its samples' radiance and their number.
+///
+/// Sums do not depend on the order of `add` and `merge`. A sample is a float; below 2^-36 of `scale` it is
+/// rounded to a multiple of 2^-60 scale. The sum is a pair of doubles, high + low, where low gathers the
+/// exact error of each addition to high (Knuth's two-sum). Both stay exact while count * sum < 2^46 scale, so
+/// the pair, renormalised, is the correctly rounded exact sum: the same bytes for every order.
+class Film {
+ public:
+  Film() = default;
+  /// `brightest`: any bound of the radiance that the scene emits; its power of two is the scale of the
+  /// rounding.
+  Film(const Window& window, double brightest);
+
+  const Window& window() const { return window_; }
+  int width() const { return window_.width(); }
+  int height() const { return window_.height(); }
+  double scale() const { return scale_; }
+
+  /// Adds one sample to pixel (x,y) of the full image. Different pixels may be added to by different threads.
+  void add(int x, int y, const Vec3f& radiance);
+
+  /// The mean of the pixel's samples, black where it has none. (x,y) in the full image.
+  Vec3d mean(int x, int y) const;
+  std::uint32_t count(int x, int y) const { return counts_[index(x, y)]; }
+
+  /// The means, as an image of the window's size.
+  Image image() const;
+
+  /// Adds the samples of `other`. Throws InputError that names what differs if the two are not parts of one
+  /// render (window, scale, `key`) or if their sample ranges overlap.
+  void merge(const Film& other);
+
+  std::string key;  ///< describes all that the samples depend on besides their index: scene, seed, options
+  std::vector<SampleRange> samples;  ///< rendered so far, ascending, disjoint, not adjacent
+  std::uint64_t nonfinite_samples = 0;
+
+ private:
+  struct ExactSum {
+    double high = 0, low = 0;
+  };
+  friend struct FilmFile;
+
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - window_.y0) * static_cast<std::size_t>(width()) +
+           static_cast<std::size_t>(x - window_.x0);
+  }
+
+  Window window_;
+  double scale_ = 1;
+  std::vector<ExactSum> sums_;  ///< 3 per pixel
+  std::vector<std::uint32_t> counts_;
+};
+
+}  // namespace castray

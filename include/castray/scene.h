@@ -1,0 +1,108 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "castray/vec.h"
+
+namespace castray {
+
+/// How a surface reflects; the definitions are in docs/materials.md.
+enum class MaterialType : std::uint8_t { diffuse, microfacet, conductor, dielectric };
+
+/// One material. Colours are linear RGB reflectances in [0,1]; `ke` is emitted radiance, >= 0.
+struct Material {
+  std::string name;
+  MaterialType type = MaterialType::diffuse;
+  Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet: albedo of the diffuse base
+  Vec3d ks{0, 0, 0};                 ///< microfacet: Schlick's F0
+  Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: constant Fresnel reflectance
+  Vec3d ke{0, 0, 0};                 ///< emitted radiance
+  double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
+  double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
+  bool two_sided_emission = false;
+  int kd_texture = -1;  ///< index into Scene::textures that multiplies kd, or -1
+
+  bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
+};
+
+/// An image on a surface: linear RGB, top row first, repeated over the plane, bilinear.
+struct Texture {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<Vec3f> texels;
+};
+
+/// A pinhole. Right-handed; `right` = `forward` x `up`. All of unit length and mutually orthogonal.
+struct Camera {
+  Vec3d position;
+  Vec3d forward{0, 0, 1}, right{-1, 0, 0}, up{0, 1, 0};
+  double tan_half_fov = 0.36397023426620234;  ///< of the vertical field of view
+
+  /// The direction (not of unit length) of sample (px,py) in [0,width)x[0,height), y downwards.
+  Vec3d direction(double px, double py, int width, int height) const {
+    const double x = (2 * px / width - 1) * tan_half_fov * width / height;
+    const double y = (1 - 2 * py / height) * tan_half_fov;
+    return right * x + up * y + forward;
+  }
+};
+
+/// `position`, `look_at` and `up` in one space; fov vertical, in degrees. Throws InputError where they define
+/// no view.
+Camera make_camera(const Vec3d& position, const Vec3d& look_at, const Vec3d& up, double fov);
+
+using Index3 = std::array<std::uint32_t, 3>;
+
+/// A scene, an immutable value once loaded.
+///
+/// Geometry lives in *scene space*: the input is parsed in double, moved so that the middle of its bounds is
+/// the origin, and divided by a power of two so that every coordinate is in [-1,1]; only then is it rounded
+/// to float. world = center + unit * scene. Radiance does not depend on this map.
+struct Scene {
+  std::string name;            ///< file name without its suffix
+  std::filesystem::path file;  ///< as the user gave it
+
+  Camera camera;                  ///< in scene space
+  int width = 784, height = 784;  ///< image size in pixels
+
+  Vec3d center{0, 0, 0};
+  double unit = 1;  ///< a power of two
+
+  std::vector<Vec3f> positions;  ///< in scene space
+  std::vector<Index3>
+      triangles;  ///< into positions; counter-clockwise seen from the side the normal points to
+  std::vector<std::uint16_t> triangle_material;  ///< per triangle, into materials
+  std::vector<Vec3f> normals;                    ///< unit shading normals, or empty
+  std::vector<Index3>
+      triangle_normals;  ///< per triangle into normals, `no_index` where it has none; or empty
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<Index3> triangle_uvs;  ///< per triangle into uvs, `no_index` where it has none; or empty
+
+  std::vector<Material> materials;
+  std::vector<Texture> textures;
+  Vec3d environment{0, 0, 0};         ///< radiance from every direction that hits nothing
+  std::vector<std::uint32_t> lights;  ///< the triangles whose material emits, ascending
+
+  /// Rendering flags of the file's "render" section, in its order: name without dashes, value as text.
+  std::vector<std::pair<std::string, std::string>> render_defaults;
+
+  // What happened while loading, for `info` and for messages.
+  std::uint64_t dropped_triangles = 0;    ///< degenerate: zero area, NaN, infinite
+  std::vector<std::string> ignored_keys;  ///< "FILE: key", of MTL files
+  std::vector<std::string> warnings;
+
+  static constexpr std::uint32_t no_index = 0xffffffffu;
+
+  const Material& material_of(std::uint32_t triangle) const { return materials[triangle_material[triangle]]; }
+  Vec3d to_world(const Vec3d& p) const { return center + p * unit; }
+};
+
+/// Reads a scene .json or an .obj (seen by an automatic view). Throws InputError with the place of the first
+/// error.
+Scene load_scene(const std::filesystem::path& file);
+
+}  // namespace castray
