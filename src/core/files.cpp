@@ -1,0 +1,145 @@
+#include "core/files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "castray/error.h"
+
+namespace castray {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail(const fs::path& file, const std::string& what) {
+  throw InputError({file.string()}, what);
+}
+
+std::string reason(int error) { return error ? std::strerror(error) : "unknown error"; }
+
+/// The file that a chain of symbolic links ends in; it need not exist.
+fs::path link_target(const fs::path& file) {
+  std::error_code ignored;
+  fs::path target = file;
+  for (int links = 0; links < 40 && fs::is_symlink(target, ignored); ++links) {
+    const fs::path next = fs::read_symlink(target, ignored);
+    target = next.is_absolute() ? next : target.parent_path() / next;
+  }
+  return target;
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+bool is_special(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  return fs::exists(status) && !fs::is_regular_file(status);
+}
+
+/// A new, empty file in `folder` that is removed again unless it is renamed.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& folder) {
+    static std::atomic<unsigned> number{0};
+    int descriptor = -1;
+    for (int tries = 0; tries < 1000 && descriptor < 0; ++tries) {
+      path_ = folder / (".castray-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp");
+      descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor < 0 && errno != EEXIST) break;
+    }
+    if (descriptor < 0)
+      error_ = errno;
+    else
+      ::close(descriptor);
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!path_.empty() && !error_) fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  const fs::path& path() const { return path_; }
+  int error() const { return error_; }
+
+  void rename_to(const fs::path& target) {
+    std::error_code error;
+    const fs::file_status old = fs::status(target, error);
+    if (fs::exists(old)) fs::permissions(path_, old.permissions(), error);
+    fs::rename(path_, target, error);
+    if (error) fail(target, "cannot be replaced: " + error.message());
+    path_.clear();
+  }
+
+ private:
+  fs::path path_;
+  int error_ = 0;
+};
+
+void write_stream(const fs::path& file, const fs::path& to, const std::function<void(std::ostream&)>& write) {
+  errno = 0;
+  std::ofstream out(to, std::ios::binary);
+  if (!out) fail(file, "cannot be opened for writing: " + reason(errno));
+  write(out);
+  out.close();
+  if (!out) fail(file, "cannot be written: " + reason(errno) + "; free some space or write elsewhere");
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file) {
+  std::error_code ignored;
+  if (fs::is_directory(file, ignored)) fail(file, "is a folder; give a file");
+  errno = 0;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) fail(file, "cannot be read: " + reason(errno));
+  std::string bytes;
+  char block[1 << 16];
+  while (in.read(block, sizeof block) || in.gcount() > 0)
+    bytes.append(block, static_cast<std::size_t>(in.gcount()));
+  if (in.bad()) fail(file, "cannot be read: " + reason(errno));
+  return bytes;
+}
+
+void check_writable(const fs::path& file) {
+  if (file.empty()) throw InputError("an output file's name is empty; give a path");
+  const fs::path target = link_target(file), folder = folder_of(target);
+  std::error_code ignored;
+  if (!fs::exists(folder, ignored))
+    fail(file, "the folder " + folder.string() + " does not exist; create it first");
+  if (!fs::is_directory(folder, ignored)) fail(file, folder.string() + " is not a folder");
+  if (fs::is_directory(target, ignored) || !target.has_filename())
+    fail(file, "is a folder; give a file name");
+  const fs::file_status status = fs::status(target, ignored);
+  constexpr fs::perms any_write = fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
+  if (fs::exists(status) &&
+      ((status.permissions() & any_write) == fs::perms::none || ::access(target.c_str(), W_OK) != 0))
+    fail(file, "is write-protected; make it writable or give another name");
+  if (!is_special(target) && ::access(folder.c_str(), W_OK | X_OK) != 0)
+    fail(file, "the folder " + folder.string() + " is not writable");
+}
+
+void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
+  check_writable(file);
+  const fs::path target = link_target(file);
+  if (is_special(target)) return write_stream(file, target, write);
+  TemporaryFile temporary(folder_of(target));
+  if (temporary.error()) fail(file, "cannot be written: " + reason(temporary.error()));
+  write_stream(file, temporary.path(), write);
+  temporary.rename_to(target);
+}
+
+void write_file(const fs::path& file, std::string_view bytes) {
+  write_file(file,
+             [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+}
+
+}  // namespace castray

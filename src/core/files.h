@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+namespace castray {
+
+/// All bytes of a file. Throws InputError that says why it cannot be read.
+std::string read_file(const std::filesystem::path& file);
+
+/// Writes what `write` puts into the stream to a temporary file beside `file`, then renames it, so that
+/// `file` is at any time the old one or the new one. A symbolic link is followed; what is not a regular file
+/// (a device, a pipe) is written to directly. Throws InputError, with `file` untouched and no temporary file
+/// left, if anything fails or `write` throws.
+void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
+void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Throws the InputError that `write_file` would, as far as that can be known without writing: the folder is
+/// missing or not writable, the target is a folder or write-protected.
+void check_writable(const std::filesystem::path& file);
+
+}  // namespace castray
