@@ -1,1 +1,16 @@
-# src/kernels is compiled once per instruction set.
+# src/kernels/*.cpp is compiled once per instruction set, each into a namespace of its own (src/kernels/isa.h).
+set(CASTRAY_ISA_scalar "")
+set(CASTRAY_ISA_sse4 -msse4.2 -mpopcnt)
+set(CASTRAY_ISA_avx2 -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt)
+set(CASTRAY_ISA_avx512 ${CASTRAY_ISA_avx2} -mavx512f -mavx512bw -mavx512vl -mavx512dq)
+
+file(GLOB CASTRAY_KERNEL_SOURCES CONFIGURE_DEPENDS src/kernels/*.cpp)
+foreach(isa scalar sse4 avx2 avx512)
+  add_library(castray_kernels_${isa} OBJECT ${CASTRAY_KERNEL_SOURCES})
+  target_include_directories(castray_kernels_${isa} PRIVATE include src)
+  # GCC 12 takes the undefined operands inside its own AVX-512 header for ours.
+  target_compile_options(castray_kernels_${isa} PRIVATE ${CASTRAY_ISA_${isa}}
+    $<$<CONFIG:Release>:-O3> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  target_link_libraries(castray_kernels_${isa} PRIVATE castray_flags)
+  target_sources(castray PRIVATE $<TARGET_OBJECTS:castray_kernels_${isa}>)
+endforeach()
