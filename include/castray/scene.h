@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "castray/error.h"
 #include "castray/vec.h"
 
 namespace castray {
@@ -55,6 +55,16 @@ struct Camera {
 /// no view.
 Camera make_camera(const Vec3d& position, const Vec3d& look_at, const Vec3d& up, double fov);
 
+/// A rendering flag of a scene file's "render" section.
+struct RenderDefault {
+  std::string name;   ///< without dashes
+  std::string value;  ///< as on the command line: true and false are "on" and "off", arrays joined by commas
+  SourcePlace place;  ///< of the key
+};
+
+inline constexpr int max_image_side = 65536;
+inline constexpr int max_image_pixels = 1 << 28;
+
 using Index3 = std::array<std::uint32_t, 3>;
 
 /// A scene, an immutable value once loaded.
@@ -87,8 +97,7 @@ struct Scene {
   Vec3d environment{0, 0, 0};         ///< radiance from every direction that hits nothing
   std::vector<std::uint32_t> lights;  ///< the triangles whose material emits, ascending
 
-  /// Rendering flags of the file's "render" section, in its order: name without dashes, value as text.
-  std::vector<std::pair<std::string, std::string>> render_defaults;
+  std::vector<RenderDefault> render_defaults;  ///< in the file's order
 
   // What happened while loading, for `info` and for messages.
   std::uint64_t dropped_triangles = 0;    ///< degenerate: zero area, NaN, infinite
@@ -99,10 +108,18 @@ struct Scene {
 
   const Material& material_of(std::uint32_t triangle) const { return materials[triangle_material[triangle]]; }
   Vec3d to_world(const Vec3d& p) const { return center + p * unit; }
+  Vec3d to_scene(const Vec3d& p) const { return (p - center) / unit; }
 };
+
+/// A view, in scene space, that frames all of `scene` in its image size, from the front right above (+z, +x,
+/// +y).
+Camera automatic_camera(const Scene& scene);
 
 /// Reads a scene .json or an .obj (seen by an automatic view). Throws InputError with the place of the first
 /// error.
+///
+/// A mirroring transform (negative determinant) keeps each mesh's outward side outward: the counter-clockwise
+/// order of its triangles is turned round with it, so what emitted outwards still does.
 Scene load_scene(const std::filesystem::path& file);
 
 }  // namespace castray

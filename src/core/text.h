@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace castray {
+
+/// `text` as it may stand in a one-line message: control characters as '?', cut after 80 bytes.
+std::string printable(std::string_view text);
+
+/// `text` without a UTF-8 byte order mark in front.
+std::string_view without_bom(std::string_view text);
+
+}  // namespace castray

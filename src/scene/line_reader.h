@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "castray/error.h"
+
+namespace castray {
+
+/// Walks over the lines of an OBJ or MTL text and the words of each line. Lines may end in LF, CR or CRLF; a
+/// backslash in front of the line's end continues it; a '#' in front of a word begins a comment.
+class LineReader {
+ public:
+  LineReader(std::string_view text, const std::string& file);
+
+  /// Goes to the next line that holds anything. False at the end.
+  bool next_line();
+
+  /// The next word of the line, or empty.
+  std::string_view word();
+  /// What is left of the line without surrounding space; for names that may contain spaces.
+  std::string_view rest();
+
+  /// The next word as a number, "nan" and "inf" among them; nothing at the line's end. Throws InputError
+  /// where the word is no number. `of` is the statement, for the message.
+  std::optional<double> number(std::string_view of);
+  double required_number(std::string_view of);
+
+  SourcePlace place() const { return {file_, line_number_, 0}; }
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(place(), what); }
+
+ private:
+  void join_continued_lines();
+
+  std::string_view text_, line_;
+  std::string joined_;  ///< the line, where it is continued
+  std::string file_;
+  int line_number_ = 0, lines_used_ = 0;
+};
+
+}  // namespace castray

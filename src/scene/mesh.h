@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "castray/scene.h"
+#include "castray/vec.h"
+
+namespace castray {
+
+/// Triangles as the input gives them, in double, before the scene's place and size are known.
+struct Mesh {
+  std::vector<Vec3d> positions;
+  std::vector<Index3> triangles;
+  std::vector<std::uint16_t> triangle_material;  ///< per triangle, into Scene::materials
+  std::vector<Vec3f> normals;
+  std::vector<Index3> triangle_normals;  ///< empty, or per triangle; Scene::no_index where it has none
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<Index3> triangle_uvs;  ///< empty, or per triangle; Scene::no_index where it has none
+};
+
+inline constexpr Index3 no_indices{Scene::no_index, Scene::no_index, Scene::no_index};
+
+}  // namespace castray

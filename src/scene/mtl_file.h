@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "castray/error.h"
+#include "scene/scene_builder.h"
+
+namespace castray {
+
+/// Reads an MTL file's materials by the mapping that docs/materials.md describes, adds them to the builder,
+/// and returns their indices. Keys that mean nothing here go to Scene::ignored_keys.
+std::vector<std::uint16_t> read_mtl(const std::filesystem::path& file, SceneBuilder& builder);
+
+/// A path as MTL and OBJ files write it, backslashes included, relative to the file that names it.
+std::filesystem::path resolve_path(std::string_view name, const std::filesystem::path& named_in);
+
+}  // namespace castray

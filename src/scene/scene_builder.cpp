@@ -1,0 +1,163 @@
+#include "scene/scene_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "castray/error.h"
+
+namespace castray {
+
+namespace {
+
+template <class T>
+void append(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Appends indices moved by `offset`; where only one side has any, the other's triangles get none.
+void append_indices(std::vector<Index3>& all, std::size_t triangles, const std::vector<Index3>& more,
+                    std::size_t more_triangles, std::size_t offset) {
+  if (all.empty() && more.empty()) return;
+  all.resize(triangles, no_indices);
+  for (Index3 corners : more) {
+    for (std::uint32_t& i : corners)
+      if (i != Scene::no_index) i += static_cast<std::uint32_t>(offset);
+    all.push_back(corners);
+  }
+  all.resize(triangles + more_triangles, no_indices);
+}
+
+template <class T>
+void keep_marked(std::vector<T>& values, const std::vector<bool>& keep) {
+  if (values.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (keep[i]) values[kept++] = values[i];
+  values.resize(kept);
+}
+
+/// Leaves only the positions that triangles use.
+void drop_unused_positions(Mesh& mesh) {
+  constexpr std::uint32_t used = 0;
+  std::vector<std::uint32_t> renumbered(mesh.positions.size(), Scene::no_index);
+  for (const Index3& corners : mesh.triangles)
+    for (std::uint32_t i : corners) renumbered[i] = used;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < renumbered.size(); ++i) {
+    if (renumbered[i] == Scene::no_index) continue;
+    mesh.positions[count] = mesh.positions[i];
+    renumbered[i] = count++;
+  }
+  if (count == renumbered.size()) return;
+  mesh.positions.resize(count);
+  for (Index3& corners : mesh.triangles)
+    for (std::uint32_t& i : corners) i = renumbered[i];
+}
+
+bool has_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+  // Differences of floats in [-1,1] and their products are nearly exact in double: 0 means collinear.
+  return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)) != Vec3d{};
+}
+
+}  // namespace
+
+std::uint16_t SceneBuilder::add_material(Material material) {
+  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
+  if (scene.materials.size() >= most)
+    throw InputError(SourcePlace{scene.file.string()},
+                     "more than " + std::to_string(most) + " materials; use fewer");
+  scene.materials.push_back(std::move(material));
+  return static_cast<std::uint16_t>(scene.materials.size() - 1);
+}
+
+void SceneBuilder::add(Mesh&& mesh) {
+  if (mesh_.triangles.empty()) {
+    mesh_ = std::move(mesh);
+    return;
+  }
+  if (mesh_.positions.size() + mesh.positions.size() >= Scene::no_index ||
+      mesh_.triangles.size() + mesh.triangles.size() >= Scene::no_index)
+    throw InputError(SourcePlace{scene.file.string()}, "more than 2^32 - 2 vertices or triangles; use fewer");
+  const std::size_t triangles = mesh_.triangles.size(), more = mesh.triangles.size();
+  append_indices(mesh_.triangle_normals, triangles, mesh.triangle_normals, more, mesh_.normals.size());
+  append_indices(mesh_.triangle_uvs, triangles, mesh.triangle_uvs, more, mesh_.uvs.size());
+  append_indices(mesh_.triangles, triangles, mesh.triangles, more, mesh_.positions.size());
+  append(mesh_.positions, mesh.positions);
+  append(mesh_.normals, mesh.normals);
+  append(mesh_.uvs, mesh.uvs);
+  append(mesh_.triangle_material, mesh.triangle_material);
+}
+
+void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
+  const std::size_t before = mesh_.triangles.size();
+  keep_marked(mesh_.triangles, keep);
+  keep_marked(mesh_.triangle_material, keep);
+  keep_marked(mesh_.triangle_normals, keep);
+  keep_marked(mesh_.triangle_uvs, keep);
+  scene.dropped_triangles += before - mesh_.triangles.size();
+  if (!mesh_.triangles.empty()) return;
+  const std::string dropped = scene.dropped_triangles == 0
+                                  ? ""
+                                  : " left: all " + std::to_string(scene.dropped_triangles) +
+                                        " are degenerate (no area, or coordinates that are not finite)";
+  throw InputError(SourcePlace{scene.file.string()}, "the scene has no triangle" + dropped);
+}
+
+void SceneBuilder::drop_nonfinite() {
+  std::vector<bool> keep(mesh_.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t)
+    keep[t] = std::ranges::all_of(mesh_.triangles[t],
+                                  [&](std::uint32_t i) { return is_finite(mesh_.positions[i]); });
+  keep_triangles(keep);
+}
+
+void SceneBuilder::find_scene_space() {
+  Vec3d low = mesh_.positions.front(), high = low;
+  for (const Vec3d& p : mesh_.positions)
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  const Vec3d half = high * 0.5 - low * 0.5;
+  scene.center = low * 0.5 + high * 0.5;
+  int exponent;
+  const double fraction = std::frexp(max_component(half), &exponent);
+  scene.unit = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+  if (!(scene.unit > 0)) scene.unit = 1;  // no extent: every triangle will be dropped
+}
+
+void SceneBuilder::round_positions() {
+  scene.positions.resize(mesh_.positions.size());
+  for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
+    scene.positions[i] = Vec3f(scene.to_scene(mesh_.positions[i]));
+}
+
+void SceneBuilder::drop_flat() {
+  std::vector<bool> keep(mesh_.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const Index3& corners = mesh_.triangles[t];
+    keep[t] = has_area(scene.positions[corners[0]], scene.positions[corners[1]], scene.positions[corners[2]]);
+  }
+  keep_triangles(keep);
+}
+
+Scene SceneBuilder::finish() {
+  drop_nonfinite();
+  drop_unused_positions(mesh_);
+  find_scene_space();
+  round_positions();
+  mesh_.positions = {};
+  drop_flat();
+  scene.triangles = std::move(mesh_.triangles);
+  scene.triangle_material = std::move(mesh_.triangle_material);
+  scene.normals = std::move(mesh_.normals);
+  scene.triangle_normals = std::move(mesh_.triangle_normals);
+  scene.uvs = std::move(mesh_.uvs);
+  scene.triangle_uvs = std::move(mesh_.triangle_uvs);
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+    if (scene.material_of(t).emits()) scene.lights.push_back(t);
+  return std::move(scene);
+}
+
+}  // namespace castray

@@ -1,0 +1,251 @@
+#include "scene/scene_file.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <map>
+
+#include "core/files.h"
+#include "core/nearest.h"
+#include "core/text.h"
+#include "scene/json_reader.h"
+#include "scene/obj_file.h"
+#include "scene/scene_builder.h"
+#include "scene/transform.h"
+
+namespace castray {
+
+namespace {
+
+constexpr Range unit_range{.least = 0, .greatest = 1};
+constexpr Range not_negative{.least = 0};
+constexpr Range positive{.least = 0, .above_least = true};
+
+const std::vector<std::string_view>& keys_of(std::string_view section) {
+  for (const SceneSection& known : scene_sections())
+    if (known.name == section) return known.keys;
+  throw std::logic_error("no such section");
+}
+
+struct TypeName {
+  std::string_view name;
+  MaterialType type;
+};
+constexpr TypeName material_types[] = {{"diffuse", MaterialType::diffuse},
+                                       {"microfacet", MaterialType::microfacet},
+                                       {"conductor", MaterialType::conductor},
+                                       {"dielectric", MaterialType::dielectric}};
+
+/// The index of `name` among `names`, or an error that suggests the nearest.
+std::size_t choose(const JsonNode& node, std::string_view name, const std::vector<std::string_view>& names) {
+  const std::string& text = read_string(node, name);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == text) return i;
+  throw InputError(node.place,
+                   fmt::format("unknown {} '{}'{}", name, printable(text), suggestion(text, names)));
+}
+
+std::string flag_value(const JsonNode& node, std::string_view name) {
+  switch (node.type) {
+    case JsonNode::Type::number:
+    case JsonNode::Type::string:
+      return node.text;
+    case JsonNode::Type::boolean:
+      return node.number != 0 ? "on" : "off";
+    case JsonNode::Type::array: {
+      std::string joined;
+      for (const JsonNode& child : node.children)
+        joined += (joined.empty() ? "" : ",") + (read_number(child, name), child.text);
+      return joined;
+    }
+    default:
+      throw InputError(node.place, fmt::format("{} must be a flag's value, not {}", name, node.type_name()));
+  }
+}
+
+class SceneFileReader {
+ public:
+  explicit SceneFileReader(const std::filesystem::path& file) : file_(file) {
+    builder_.scene.file = file;
+    builder_.scene.name = file.stem().string();
+  }
+
+  Scene read() {
+    const std::string content = read_file(file_);
+    const JsonNode root = parse_json(content, file_.string());
+    const ObjectReader scene(root, "the scene", keys_of("scene"));
+    if (const JsonNode* node = scene.find("image")) read_image_size(*node);
+    if (const JsonNode* node = scene.find("render")) read_render(*node);
+    if (const JsonNode* node = scene.find("environment")) read_environment(*node);
+    if (const JsonNode* node = scene.find("materials")) read_materials(*node);
+    const JsonNode* camera = scene.find("camera");
+    if (camera) read_camera(*camera);
+    for (const JsonNode& mesh : read_array(scene.require("meshes"), "\"meshes\"")) read_mesh(mesh);
+    Scene result = builder_.finish();
+    if (camera)
+      result.camera.position = result.to_scene(result.camera.position);
+    else
+      result.camera = automatic_camera(result);
+    return result;
+  }
+
+ private:
+  void read_camera(const JsonNode& node) {
+    const ObjectReader camera(node, "\"camera\"", keys_of("camera"));
+    const Vec3d position = read_vector(camera.require("position"), "\"position\"");
+    const Vec3d look_at = read_vector(camera.require("look_at"), "\"look_at\"");
+    const JsonNode* up = camera.find("up");
+    const JsonNode* fov = camera.find("fov");
+    constexpr Range angle{.least = 0, .greatest = 180, .above_least = true, .below_greatest = true};
+    const double degrees = fov ? read_number(*fov, "\"fov\"", angle) : 40;
+    try {
+      builder_.scene.camera =
+          make_camera(position, look_at, up ? read_vector(*up, "\"up\"") : Vec3d{0, 1, 0}, degrees);
+    } catch (const InputError& error) {
+      throw InputError(node.place, error.what());
+    }
+  }
+
+  void read_image_size(const JsonNode& node) {
+    const ObjectReader image(node, "\"image\"", keys_of("image"));
+    Scene& scene = builder_.scene;
+    if (const JsonNode* width = image.find("width"))
+      scene.width = read_integer(*width, "\"width\"", 1, max_image_side);
+    if (const JsonNode* height = image.find("height"))
+      scene.height = read_integer(*height, "\"height\"", 1, max_image_side);
+    if (static_cast<long long>(scene.width) * scene.height > max_image_pixels)
+      throw InputError(node.place, fmt::format("{} x {} pixels are too many; at most {} in all", scene.width,
+                                               scene.height, max_image_pixels));
+  }
+
+  void read_render(const JsonNode& node) {
+    if (node.type != JsonNode::Type::object)
+      throw InputError(node.place, fmt::format("\"render\" must be an object, not {}", node.type_name()));
+    for (const JsonNode& flag : node.children)
+      builder_.scene.render_defaults.push_back(
+          {flag.key, flag_value(flag, "\"" + printable(flag.key) + "\""), flag.key_place});
+  }
+
+  void read_environment(const JsonNode& node) {
+    const ObjectReader environment(node, "\"environment\"", keys_of("environment"));
+    builder_.scene.environment = read_vector(environment.require("radiance"), "\"radiance\"", not_negative);
+  }
+
+  void read_materials(const JsonNode& node) {
+    if (node.type != JsonNode::Type::object)
+      throw InputError(node.place, fmt::format("\"materials\" must be an object, not {}", node.type_name()));
+    for (const JsonNode& member : node.children)
+      material_indices_[member.key] = builder_.add_material(read_material(member));
+  }
+
+  Material read_material(const JsonNode& node) {
+    std::vector<std::string_view> all_keys, type_names;
+    for (const TypeName& known : material_types) {
+      type_names.push_back(known.name);
+      for (std::string_view key : keys_of(known.name)) all_keys.push_back(key);
+    }
+    const std::string name = fmt::format("material '{}'", printable(node.key));
+    // First the type, as the keys depend on it.
+    const ObjectReader any(node, name, all_keys);
+    const std::size_t type = choose(any.require("type"), "material type", type_names);
+    const ObjectReader reader(node, fmt::format("{} ({})", name, type_names[type]),
+                              keys_of(type_names[type]));
+    Material material{.name = node.key, .type = material_types[type].type};
+    const auto color = [&](std::string_view key, Vec3d& value, const Range& range) {
+      if (const JsonNode* found = reader.find(key))
+        value = read_vector(*found, fmt::format("\"{}\"", key), range);
+    };
+    color("kd", material.kd, unit_range);
+    color("ks", material.ks, unit_range);
+    color("reflectance", material.reflectance, unit_range);
+    color("ke", material.ke, not_negative);
+    if (const JsonNode* ior = reader.find("ior")) material.ior = read_number(*ior, "\"ior\"", positive);
+    if (const JsonNode* both = reader.find("two_sided_emission"))
+      material.two_sided_emission = read_boolean(*both, "\"two_sided_emission\"");
+    const JsonNode* alpha = reader.find("alpha");
+    if (alpha) material.alpha = read_number(*alpha, "\"alpha\"", unit_range);
+    if (const JsonNode* roughness = reader.find("roughness")) {
+      if (alpha)
+        throw InputError(roughness->key_place, "give \"roughness\" or \"alpha\" (= roughness^2), not both");
+      const double value = read_number(*roughness, "\"roughness\"", unit_range);
+      material.alpha = value * value;
+    }
+    return material;
+  }
+
+  Transform read_step(const JsonNode& node) {
+    const ObjectReader step(node, "a transform step", keys_of("transform step"));
+    if (node.children.size() != 1)
+      throw InputError(node.place, "a transform step has one key: \"scale\", \"rotate\" or \"translate\"");
+    if (const JsonNode* scale = step.find("scale")) {
+      const bool uniform = scale->type == JsonNode::Type::number;
+      const Vec3d factors =
+          uniform ? Vec3d(read_number(*scale, "\"scale\"")) : read_vector(*scale, "\"scale\"");
+      if (factors.x == 0 || factors.y == 0 || factors.z == 0)
+        throw InputError(scale->place, "\"scale\" must not be 0: nothing would be left");
+      return Transform::scale(factors);
+    }
+    if (const JsonNode* rotate = step.find("rotate")) {
+      const std::vector<double> numbers = read_numbers(*rotate, "\"rotate\"", 4);
+      const Vec3d axis{numbers[0], numbers[1], numbers[2]};
+      if (axis == Vec3d{}) throw InputError(rotate->place, "\"rotate\" needs an axis that is not (0,0,0)");
+      return Transform::rotate(axis, numbers[3]);
+    }
+    return Transform::translate(read_vector(step.require("translate"), "\"translate\""));
+  }
+
+  std::uint16_t find_material(const JsonNode& node) {
+    const auto found = material_indices_.find(read_string(node, "\"material\""));
+    if (found != material_indices_.end()) return found->second;
+    std::vector<std::string_view> known;
+    for (const auto& [name, index] : material_indices_) known.push_back(name);
+    throw InputError(node.place, fmt::format("material '{}' not found{}", printable(node.text),
+                                             known.empty() ? "; the scene has no \"materials\""
+                                                           : suggestion(node.text, known)));
+  }
+
+  void read_mesh(const JsonNode& node) {
+    const ObjectReader reader(node, "a mesh", keys_of("mesh"));
+    ObjOptions options;
+    if (const JsonNode* material = reader.find("material")) options.material = find_material(*material);
+    if (const JsonNode* normals = reader.find("normals"))
+      options.read_normals = choose(*normals, "\"normals\"", {"file", "face"}) == 0;
+    Transform transform;
+    if (const JsonNode* steps = reader.find("transform"))
+      for (const JsonNode& step : read_array(*steps, "\"transform\""))
+        transform = transform.then(read_step(step));
+    const JsonNode& obj = reader.require("obj");
+    const std::filesystem::path path = file_.parent_path() / read_string(obj, "\"obj\"");
+    if (!std::filesystem::exists(path))
+      throw InputError(obj.place, fmt::format("no such file: {}", printable(path.string())));
+    Mesh mesh = read_obj(path, options, builder_);
+    if (reader.find("transform")) apply(transform, mesh);
+    builder_.add(std::move(mesh));
+  }
+
+  std::filesystem::path file_;
+  SceneBuilder builder_;
+  std::map<std::string, std::uint16_t> material_indices_;
+};
+
+}  // namespace
+
+const std::vector<SceneSection>& scene_sections() {
+  static const std::vector<SceneSection> sections = {
+      {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "environment"}},
+      {"camera", {"position", "look_at", "up", "fov"}},
+      {"image", {"width", "height"}},
+      {"environment", {"radiance"}},
+      {"diffuse", {"type", "kd", "ke", "two_sided_emission"}},
+      {"microfacet", {"type", "kd", "ks", "roughness", "alpha", "ke", "two_sided_emission"}},
+      {"conductor", {"type", "reflectance", "roughness", "alpha", "ke", "two_sided_emission"}},
+      {"dielectric", {"type", "ior", "roughness", "alpha", "ke", "two_sided_emission"}},
+      {"mesh", {"obj", "material", "transform", "normals"}},
+      {"transform step", {"scale", "rotate", "translate"}},
+  };
+  return sections;
+}
+
+Scene read_scene_file(const std::filesystem::path& file) { return SceneFileReader(file).read(); }
+
+}  // namespace castray
