@@ -1,0 +1,123 @@
+// Writes big meshes, and Cornell boxes with one of them in place of the two boxes, so that nothing big need
+// be stored or downloaded.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <filesystem>
+#include <ostream>
+
+#include "castray/error.h"
+#include "core/files.h"
+#include "generate/shapes.h"
+
+namespace castray {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_obj(const Shape& shape, const std::string& title, const fs::path& file) {
+  write_file(file, [&](std::ostream& out) {
+    out << "# " << title << '\n';
+    for (const Vec3d& p : shape.positions) out << fmt::format("v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
+    for (const Index3& t : shape.triangles) out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  });
+}
+
+/// Nine little-endian floats a triangle, nothing else.
+void write_soup(const Shape& shape, const fs::path& file) {
+  write_file(file, [&](std::ostream& out) {
+    for (const Index3& t : shape.triangles)
+      for (std::uint32_t i : t) {
+        const Vec3f p(shape.positions[i]);
+        const float numbers[3] = {p.x, p.y, p.z};
+        char bytes[sizeof numbers];
+        std::memcpy(bytes, numbers, sizeof numbers);
+        out.write(bytes, sizeof bytes);
+      }
+  });
+}
+
+/// The transform that puts a shape into the box: terrain as its ground, anything else on the floor's middle.
+std::string placement(std::string_view shape) {
+  return shape == "terrain"
+             ? R"([{ "scale": [272, 200, 278] }, { "translate": [275, 100, 280] }])"
+             : R"([{ "scale": 180 }, { "rotate": [0, 1, 0, 160] }, { "translate": [278, 182, 280] }])";
+}
+
+void write_scene(const std::string& shape, const fs::path& obj, const fs::path& file) {
+  const fs::path models =
+      fs::relative(fs::path(CASTRAY_ROOT) / "models/cornell_box", fs::absolute(file).parent_path());
+  const auto wall = [&](const char* part, const char* material) {
+    return fmt::format("    {{ \"obj\": \"{}\", \"material\": \"{}\" }},\n", (models / part).generic_string(),
+                       material);
+  };
+  const std::string text = fmt::format(
+      R"(// The Cornell box with a {} instead of its boxes. Made by castray-generate.
+{{
+  "camera": {{ "position": [278, 273, -800], "look_at": [278, 273, 0], "up": [0, 1, 0], "fov": 40 }},
+  "image": {{ "width": 784, "height": 784 }},
+  "render": {{ "spp": 64 }},
+  "materials": {{
+    "white": {{ "type": "diffuse", "kd": [0.725, 0.71, 0.68] }},
+    "red": {{ "type": "diffuse", "kd": [0.63, 0.065, 0.05] }},
+    "green": {{ "type": "diffuse", "kd": [0.14, 0.45, 0.091] }},
+    "light": {{ "type": "diffuse", "kd": [0.65, 0.65, 0.65], "ke": [47.8348, 38.5664, 31.0808] }}
+  }},
+  "meshes": [
+{}    {{ "obj": "{}", "material": "white",
+      "transform": {} }}
+  ]
+}}
+)",
+      shape,
+      wall("floor.obj", "white") + wall("left.obj", "red") + wall("right.obj", "green") +
+          wall("light.obj", "light"),
+      obj.filename().generic_string(), placement(shape));
+  write_file(file, text);
+}
+
+int run(int argc, char** argv) {
+  std::string shape, file;
+  std::uint32_t triangles = 0, seed = 1;
+  CLI::App app{"Writes a mesh made by rule.", "castray-generate"};
+  app.add_option("shape", shape, "icosphere, blob, torus_knot, terrain, hair or soup")->required();
+  app.add_option("-n,--triangles", triangles, "how many, about (terrain, hair and soup: exactly)")
+      ->required();
+  app.add_option("--seed", seed, "another mesh of the kind")->capture_default_str();
+  app.add_option(
+         "-o", file,
+         "FILE.obj; FILE.soup, raw float32, 9 a triangle; or FILE.json, a Cornell box around FILE.obj")
+      ->required();
+  CLI11_PARSE(app, argc, argv);
+
+  const fs::path target = file;
+  const fs::path obj = fs::path(target).replace_extension(".obj");
+  const Shape made = make_shape(shape, triangles, seed);
+  const std::string title = fmt::format("{}, {} triangles, seed {}", shape, made.triangles.size(), seed);
+  if (target.extension() == ".soup") {
+    write_soup(made, target);
+  } else if (target.extension() == ".obj" || target.extension() == ".json") {
+    write_obj(made, title, obj);
+    if (target.extension() == ".json") write_scene(shape, obj, target);
+  } else {
+    throw InputError({file}, "must end in .obj, .soup or .json");
+  }
+  fmt::print("{}: {}\n", file, title);
+  return 0;
+}
+
+}  // namespace
+
+}  // namespace castray
+
+int main(int argc, char** argv) {
+  try {
+    return castray::run(argc, argv);
+  } catch (const castray::InputError& error) {
+    fmt::print(stderr, "castray-generate: error: {}\n", error.what());
+    return 2;
+  }
+}
