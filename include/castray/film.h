@@ -53,19 +53,21 @@ class Film {
   /// The means, as an image of the window's size.
   Image image() const;
 
-  /// Adds the samples of `other`. Throws InputError that names what differs if the two are not parts of one
-  /// render (window, scale, `key`) or if their sample ranges overlap.
+  /// Adds the samples of `other`. Throws InputError that names what differs, and changes nothing, if the two
+  /// are not parts of one render (window, scale, `key`) or if their sample ranges overlap.
   void merge(const Film& other);
 
-  std::string key;  ///< describes all that the samples depend on besides their index: scene, seed, options
+  /// All that the samples depend on besides their index (scene, seed, options), as "name=value" items
+  /// separated by "; ".
+  std::string key;
   std::vector<SampleRange> samples;  ///< rendered so far, ascending, disjoint, not adjacent
   std::uint64_t nonfinite_samples = 0;
 
  private:
-  struct ExactSum {
+  struct Sum {
     double high = 0, low = 0;
   };
-  friend struct FilmFile;
+  friend struct FilmFile;  // reads and writes the sums as they are
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - window_.y0) * static_cast<std::size_t>(width()) +
@@ -74,8 +76,16 @@ class Film {
 
   Window window_;
   double scale_ = 1;
-  std::vector<ExactSum> sums_;  ///< 3 per pixel
+  std::vector<Sum> sums_;  ///< 3 per pixel
   std::vector<std::uint32_t> counts_;
 };
+
+/// Reads a .film file. Throws InputError if it is not one, is truncated or corrupt.
+Film read_film(const std::filesystem::path& file);
+
+/// Writes the film losslessly to a .film file, else its image (see `write_image`). The bytes of a .film
+/// depend only on the samples and `key`, not on the order in which they were added and merged.
+void write_film(const std::filesystem::path& file, const Film& film, const Display& display = {},
+                const Metadata& metadata = {});
 
 }  // namespace castray

@@ -25,4 +25,68 @@ struct Image {
   const Vec3f& at(int x, int y) const { return const_cast<Image*>(this)->at(x, y); }
 };
 
+/// How many pixels have a component that is NaN or infinite.
+std::size_t count_nonfinite(const Image& image);
+
+/// How light becomes a stored value in [0,1]: the curve of IEC 61966-2-1 ("srgb"), the identity ("linear"),
+/// or value^exponent ("gamma:EXPONENT").
+struct ToneCurve {
+  enum class Kind : unsigned char { srgb, linear, gamma };
+  Kind kind = Kind::srgb;
+  double exponent = 1;  ///< of gamma, > 0
+
+  /// Clamps to [0,1] and encodes; NaN becomes 0, so that it is never mistaken for a highlight.
+  double encode(double light) const;
+  /// The light in [0,1] that is stored as `value`.
+  double decode(double value) const;
+  friend bool operator==(const ToneCurve&, const ToneCurve&) = default;
+};
+
+/// "srgb", "linear" or "gamma:G". Throws InputError on anything else.
+ToneCurve parse_tone_curve(const std::string& text);
+std::string to_string(const ToneCurve& tone);
+
+/// How radiance is shown: multiplied by 2^exposure, then encoded.
+struct Display {
+  ToneCurve tone;
+  double exposure = 0;  ///< stops
+};
+
+/// Radiance as stored values in [0,1].
+Image displayed(const Image& radiance, const Display& display);
+
+/// What a file says besides its pixels: scene, spp, seed, seconds, version, ...
+using Metadata = std::map<std::string, std::string>;
+
+/// What a file holds. PPM and PNG hold values in [0,1] under a tone curve that the file does not tell, all
+/// other formats hold linear radiance.
+struct ImageFile {
+  Image image;
+  bool encoded = false;  ///< `image` holds stored values in [0,1], not radiance
+  Metadata metadata;     ///< PNG and EXR
+};
+
+/// Reads .ppm (P3, P6), .png (8 and 16 bits), .pfm, .hdr, .exr (first part; half, float; scanlines, tiles) or
+/// .film; grey is widened to RGB, alpha is left out. Throws InputError that says what is wrong with the file.
+ImageFile read_image(const std::filesystem::path& file);
+
+/// Linear radiance: what `file` holds, decoded by `tone` where it is encoded.
+Image decoded(const ImageFile& file, const ToneCurve& tone);
+
+/// Writes `image` in the format of the suffix, atomically. `display` shapes .ppm and .png, of 8 bits, only;
+/// there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and .exr.
+/// Throws InputError.
+void write_image(const std::filesystem::path& file, const Image& image, const Display& display = {},
+                 const Metadata& metadata = {});
+
+/// Throws InputError if an image or film could not be written to `file`: an unknown suffix (the message lists
+/// the known ones), a missing folder, a write-protected target, ... To be asked before work starts.
+void check_output_image(const std::filesystem::path& file);
+
+/// Whether the suffix is that of a format of 8 bits, which `Display` shapes.
+bool is_8bit_format(const std::filesystem::path& file);
+
+/// Whether the suffix is .film.
+bool is_film_format(const std::filesystem::path& file);
+
 }  // namespace castray

@@ -1,27 +1,19 @@
 #include "castray/film.h"
 
+#include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "castray/error.h"
+#include "core/two_sum.h"
 
 namespace castray {
 
 namespace {
 
-struct Pair {
-  double sum, error;
-};
-
-/// sum + error == a + b exactly (Knuth, TAOCP 2, 4.2.2).
-Pair two_sum(double a, double b) {
-  const double sum = a + b;
-  const double from_b = sum - a;
-  return {sum, (a - (sum - from_b)) + (b - from_b)};
-}
-
-void append_ranges(std::vector<SampleRange>& ranges, const std::vector<SampleRange>& more) {
+/// The union of two sets of disjoint ranges, neighbours joined.
+std::vector<SampleRange> joined_ranges(std::vector<SampleRange> ranges,
+                                       const std::vector<SampleRange>& more) {
   ranges.insert(ranges.end(), more.begin(), more.end());
   std::sort(ranges.begin(), ranges.end(), [](auto& a, auto& b) { return a.first < b.first; });
   std::vector<SampleRange> joined;
@@ -34,7 +26,31 @@ void append_ranges(std::vector<SampleRange>& ranges, const std::vector<SampleRan
     else
       joined.push_back(range);
   }
-  ranges = std::move(joined);
+  return joined;
+}
+
+std::string to_string(const Window& w) {
+  return fmt::format("{},{},{},{} of {}x{}", w.x0, w.y0, w.x1, w.y1, w.full_width, w.full_height);
+}
+
+std::vector<std::string> items_of(const std::string& key) {
+  std::vector<std::string> items;
+  for (std::size_t at = 0; at < key.size();) {
+    const std::size_t end = std::min(key.find("; ", at), key.size());
+    items.push_back(key.substr(at, end - at));
+    at = end + 2;
+  }
+  return items;
+}
+
+/// The items of `a` that `b` has not.
+std::string items_missing(const std::string& a, const std::string& b) {
+  const std::vector<std::string> have = items_of(b);
+  std::string missing;
+  for (const std::string& item : items_of(a))
+    if (std::find(have.begin(), have.end(), item) == have.end())
+      missing += (missing.empty() ? "" : ", ") + item;
+  return missing.empty() ? "nothing more" : missing;
 }
 
 }  // namespace
@@ -52,8 +68,8 @@ void Film::add(int x, int y, const Vec3f& radiance) {
   for (int c = 0; c < 3; ++c) {
     double v = radiance[c];
     if (std::abs(v) < small) v = (v + rounder) - rounder;
-    ExactSum& s = sums_[3 * pixel + static_cast<std::size_t>(c)];
-    const Pair next = two_sum(s.high, v);
+    Sum& s = sums_[3 * pixel + static_cast<std::size_t>(c)];
+    const ExactSum next = two_sum(s.high, v);
     s.high = next.sum;
     s.low += next.error;
   }
@@ -64,7 +80,7 @@ Vec3d Film::mean(int x, int y) const {
   const std::size_t pixel = index(x, y);
   if (counts_[pixel] == 0) return {};
   const double n = counts_[pixel];
-  const ExactSum* s = &sums_[3 * pixel];
+  const Sum* s = &sums_[3 * pixel];
   return Vec3d{s[0].high + s[0].low, s[1].high + s[1].low, s[2].high + s[2].low} / n;
 }
 
@@ -76,12 +92,18 @@ Image Film::image() const {
 }
 
 void Film::merge(const Film& other) {
-  if (window_ != other.window_) throw InputError("the films have different sizes or crop windows");
-  if (key != other.key) throw InputError("the films are of different renders: " + key + " and " + other.key);
-  if (scale_ != other.scale_) throw InputError("the films are of scenes of different brightness");
-  append_ranges(samples, other.samples);
+  if (window_ != other.window_)
+    throw InputError("the films show different windows: " + to_string(window_) + " and " +
+                     to_string(other.window_));
+  if (key != other.key)
+    throw InputError("the films are of different renders: " + items_missing(key, other.key) + " against " +
+                     items_missing(other.key, key));
+  if (scale_ != other.scale_)
+    throw InputError(
+        fmt::format("the films are of scenes of different brightness: {} and {}", scale_, other.scale_));
+  samples = joined_ranges(samples, other.samples);
   for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const Pair high = two_sum(sums_[i].high, other.sums_[i].high);
+    const ExactSum high = two_sum(sums_[i].high, other.sums_[i].high);
     sums_[i] = {high.sum, sums_[i].low + other.sums_[i].low + high.error};
   }
   for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];

@@ -1,7 +1,11 @@
 #include <catch2/catch.hpp>
 
+#include "castray/error.h"
 #include "castray/film.h"
+#include "core/files.h"
 #include "core/sequences.h"
+#include "temporary_folder.h"
+#include "test_image.h"
 
 using namespace castray;
 
@@ -36,4 +40,49 @@ TEST_CASE("film sums do not depend on how samples are split and merged") {
 TEST_CASE("films that share a sample are refused") {
   Film a = film_of(0, 10);
   CHECK_THROWS_WITH(a.merge(film_of(9, 3)), Catch::Contains("sample 9"));
+}
+
+TEST_CASE("a film file is the same bytes however its samples were split and merged") {
+  const TemporaryFolder folder;
+  write_film(folder / "whole.film", test_film(5, 4, 0, 30));
+  write_film(folder / "a.film", test_film(5, 4, 0, 7));
+  write_film(folder / "b.film", test_film(5, 4, 7, 11));
+  write_film(folder / "c.film", test_film(5, 4, 18, 12));
+  for (const std::string order : {"abc", "bca", "cab", "cba"}) {
+    Film merged = read_film(folder / (order.substr(0, 1) + ".film"));
+    for (const char name : order.substr(1))
+      merged.merge(read_film(folder / (std::string(1, name) + ".film")));
+    write_film(folder / "merged.film", merged);
+    CHECK(read_file(folder / "merged.film") == read_file(folder / "whole.film"));
+  }
+  CHECK(read_image(folder / "whole.film").image.pixels == test_film(5, 4, 0, 30).image().pixels);
+}
+
+TEST_CASE("films of different renders are refused with what differs, and stay as they were") {
+  Film film = test_film(2, 2, 0, 3);
+  Film other = test_film(2, 2, 3, 3);
+  other.key = "scene=test; seed=1";
+  CHECK_THROWS_WITH(film.merge(other), Catch::Contains("seed=0 against seed=1") && !Catch::Contains("scene"));
+  CHECK_THROWS_WITH(film.merge(test_film(2, 3, 3, 3)), Catch::Contains("0,0,2,2 of 2x2 and 0,0,2,3 of 2x3"));
+  CHECK_THROWS_WITH(film.merge(test_film(2, 2, 2, 3)), Catch::Contains("sample 2"));
+  CHECK(film.samples == std::vector<SampleRange>{{0, 3}});
+  CHECK(film.count(0, 0) == 3);
+}
+
+TEST_CASE("a film file that is cut or changed is refused") {
+  const TemporaryFolder folder;
+  write_film(folder / "a.film", test_film(3, 3, 0, 2));
+  const std::string whole = read_file(folder / "a.film");
+  for (std::size_t length = 0; length < whole.size(); length += 13) {
+    write_file(folder / "cut.film", whole.substr(0, length));
+    CHECK_THROWS_AS(read_film(folder / "cut.film"), InputError);
+  }
+  for (std::size_t at = 0; at < whole.size(); at += 7) {
+    std::string changed = whole;
+    changed[at] = static_cast<char>(changed[at] ^ 4);
+    write_file(folder / "changed.film", changed);
+    CHECK_THROWS_AS(read_film(folder / "changed.film"), InputError);
+  }
+  write_file(folder / "long.film", whole + "x");
+  CHECK_THROWS_WITH(read_film(folder / "long.film"), Catch::Contains("behind its end"));
 }

@@ -1,0 +1,115 @@
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <ostream>
+
+#include "castray/error.h"
+#include "image/formats.h"
+
+namespace castray {
+
+namespace {
+
+class BytesIn : public Imf::IStream {
+ public:
+  BytesIn(const std::string& name, std::string_view bytes) : IStream(name.c_str()), bytes_(bytes) {}
+  bool read(char* to, int count) override {
+    const auto n = static_cast<std::size_t>(count);
+    if (at_ > bytes_.size() || bytes_.size() - at_ < n) throw InputError("it is truncated");
+    std::memcpy(to, bytes_.data() + at_, n);
+    at_ += n;
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t position) override { at_ = position; }
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+class StreamOut : public Imf::OStream {
+ public:
+  explicit StreamOut(std::ostream& out) : OStream("image"), out_(out) {}
+  void write(const char* from, int count) override { out_.write(from, count); }
+  std::uint64_t tellp() override {
+    return static_cast<std::uint64_t>(std::max<std::streamoff>(out_.tellp(), 0));
+  }
+  void seekp(std::uint64_t position) override { out_.seekp(static_cast<std::streamoff>(position)); }
+
+ private:
+  std::ostream& out_;
+};
+
+constexpr std::array<const char*, 3> rgb = {"R", "G", "B"};
+
+/// The names of the channels for red, green and blue: R, G, B, or Y for all three.
+std::array<const char*, 3> channels_of(const Imf::ChannelList& channels) {
+  if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B")) return rgb;
+  if (channels.findChannel("Y")) return {"Y", "Y", "Y"};
+  std::string found;
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel)
+    found += std::string(found.empty() ? "" : ", ") + channel.name();
+  throw InputError("it has neither channels R, G, B nor Y, but " + (found.empty() ? "none" : found));
+}
+
+Imf::FrameBuffer frame_of(Image& image, const std::array<const char*, 3>& names, const Imath::Box2i& window) {
+  Imf::FrameBuffer frame;
+  const std::size_t row = sizeof(Vec3f) * static_cast<std::size_t>(image.width);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const void* first = reinterpret_cast<const float*>(image.pixels.data()) + c;
+    frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(Vec3f), row));
+  }
+  return frame;
+}
+
+ImageFile read_from(const std::string& name, std::string_view bytes) {
+  BytesIn in(name, bytes);
+  Imf::InputFile file(in, 0);
+  const Imf::Header& header = file.header();
+  const Imath::Box2i window = header.dataWindow();
+  const double width = double(window.max.x) - window.min.x + 1,
+               height = double(window.max.y) - window.min.y + 1;
+  check_image_size(name, width, height, bytes.size(), 2000);
+  const auto names = channels_of(header.channels());
+  ImageFile result{Image(static_cast<int>(width), static_cast<int>(height)), false, {}};
+  Image& image = result.image;
+  file.setFrameBuffer(frame_of(image, names, window));
+  file.readPixels(window.min.y, window.max.y);
+  if (names[0] == names[1])
+    for (Vec3f& v : image.pixels) v = Vec3f(v.z);
+  for (auto attribute = header.begin(); attribute != header.end(); ++attribute)
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute()))
+      result.metadata[attribute.name()] = text->value();
+  return result;
+}
+
+}  // namespace
+
+ImageFile read_exr(const std::string& name, std::string_view bytes) {
+  try {
+    return read_from(name, bytes);
+  } catch (const std::exception& error) {
+    throw InputError({name}, std::string("cannot be read as OpenEXR: ") + error.what());
+  }
+}
+
+void write_exr(std::ostream& out, const Image& image, const Metadata& metadata) {
+  Imf::Header header(image.width, image.height);
+  for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
+  StreamOut stream(out);
+  Imf::OutputFile file(stream, header, 0);
+  Image copy = image;  // a frame buffer takes writable memory
+  file.setFrameBuffer(frame_of(copy, rgb, header.dataWindow()));
+  file.writePixels(image.height);
+}
+
+}  // namespace castray

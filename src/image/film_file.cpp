@@ -1,0 +1,128 @@
+#include <zlib.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "castray/error.h"
+#include "core/files.h"
+#include "core/two_sum.h"
+#include "image/formats.h"
+
+namespace castray {
+
+// A film file: the line "castray film 1", a line of JSON, then little-endian: per pixel of the window, top
+// row first, red, green, blue, the pair (high, low) of doubles with high + low the sum and high its rounding;
+// then per pixel the number of samples (32 bits); then the CRC-32 of all before.
+
+static_assert(std::endian::native == std::endian::little, "film files are written as memory holds them");
+
+namespace {
+
+constexpr std::string_view magic = "castray film 1\n";
+using nlohmann::json;
+
+std::uint32_t checksum(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+}  // namespace
+
+struct FilmFile {
+  static std::string bytes_of(const Film& film) {
+    json ranges = json::array();
+    for (const SampleRange& range : film.samples) ranges.push_back({range.first, range.count});
+    const Window& w = film.window_;
+    const json header{{"window", {w.full_width, w.full_height, w.x0, w.y0, w.x1, w.y1}},
+                      {"scale", film.scale_},
+                      {"samples", ranges},
+                      {"key", film.key},
+                      {"nonfinite_samples", film.nonfinite_samples},
+                      {"version", CASTRAY_VERSION}};
+    std::string bytes =
+        std::string(magic) + header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
+    const auto append = [&](const auto& value) {
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    for (const Film::Sum& sum : film.sums_) {
+      const ExactSum rounded = two_sum(sum.high, sum.low);
+      append(rounded.sum);
+      append(rounded.error);
+    }
+    for (const std::uint32_t count : film.counts_) append(count);
+    append(checksum(bytes));
+    return bytes;
+  }
+
+  static Film parse(const std::string& name, std::string_view bytes) {
+    const auto fail = [&](const std::string& what) { throw InputError({name}, what); };
+    if (!bytes.starts_with(magic)) fail("is not a film of castray (format 1)");
+    const std::size_t header_end = bytes.find('\n', magic.size());
+    if (header_end == std::string_view::npos) fail("is truncated");
+    Film film;
+    try {
+      film = parse_header(json::parse(bytes.substr(magic.size(), header_end - magic.size())));
+    } catch (const json::exception& error) {
+      fail(std::string("has a corrupt header: ") + error.what());
+    }
+    const std::string_view data = bytes.substr(header_end + 1);
+    const auto pixels = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
+    const std::size_t sum_bytes = 3 * sizeof(Film::Sum) * pixels, count_bytes = 4 * pixels;
+    if (data.size() != sum_bytes + count_bytes + 4)
+      fail(data.size() < sum_bytes + count_bytes + 4 ? "is truncated" : "has bytes behind its end");
+    std::uint32_t stored;
+    std::memcpy(&stored, data.data() + sum_bytes + count_bytes, 4);
+    if (stored != checksum(bytes.substr(0, bytes.size() - 4))) fail("is corrupt: its checksum is wrong");
+    film.sums_.resize(3 * pixels);
+    film.counts_.resize(pixels);
+    std::memcpy(film.sums_.data(), data.data(), sum_bytes);
+    std::memcpy(film.counts_.data(), data.data() + sum_bytes, count_bytes);
+    return film;
+  }
+
+ private:
+  /// A film without its sums. Throws json::exception also where a value is out of range.
+  static Film parse_header(const json& header) {
+    const auto demand = [](bool good, const char* what) {
+      if (!good) throw json::other_error::create(500, what, nullptr);
+    };
+    Film film;
+    const auto sides = header.at("window").get<std::array<int, 6>>();
+    Window& w = film.window_;
+    w = {sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]};
+    demand(0 <= w.x0 && w.x0 < w.x1 && w.x1 <= w.full_width, "bad window");
+    demand(0 <= w.y0 && w.y0 < w.y1 && w.y1 <= w.full_height, "bad window");
+    film.scale_ = header.at("scale").get<double>();
+    demand(film.scale_ > 0 && std::isfinite(film.scale_), "bad scale");
+    film.key = header.at("key").get<std::string>();
+    film.nonfinite_samples = header.at("nonfinite_samples").get<std::uint64_t>();
+    std::uint64_t end = 0;
+    for (const json& range : header.at("samples")) {
+      const auto [first, count] = range.get<std::array<std::uint64_t, 2>>();
+      demand(first >= end && count > 0 && first + count > first, "bad sample ranges");
+      film.samples.push_back({first, count});
+      end = first + count;
+    }
+    return film;
+  }
+};
+
+Film parse_film(const std::string& name, std::string_view bytes) { return FilmFile::parse(name, bytes); }
+
+Film read_film(const std::filesystem::path& file) {
+  const std::string bytes = read_file(file);
+  return parse_film(file.string(), bytes);
+}
+
+void write_film(const std::filesystem::path& file, const Film& film, const Display& display,
+                const Metadata& metadata) {
+  if (is_film_format(file))
+    write_file(file, FilmFile::bytes_of(film));
+  else
+    write_image(file, film.image(), display, metadata);
+}
+
+}  // namespace castray

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "castray/film.h"
+#include "castray/image.h"
+
+namespace castray {
+
+/// Reading: `bytes` is all of the file; `name` is for messages. Each throws InputError.
+ImageFile read_ppm(const std::string& name, std::string_view bytes);
+ImageFile read_pfm(const std::string& name, std::string_view bytes);
+ImageFile read_png(const std::string& name, std::string_view bytes);
+ImageFile read_hdr(const std::string& name, std::string_view bytes);
+ImageFile read_exr(const std::string& name, std::string_view bytes);
+Film parse_film(const std::string& name, std::string_view bytes);
+
+void write_pfm(std::ostream& out, const Image& image);
+void write_hdr(std::ostream& out, const Image& image);
+void write_exr(std::ostream& out, const Image& image, const Metadata& metadata);
+
+/// 8-bit RGB, top row first.
+struct Image8 {
+  int width = 0, height = 0;
+  std::vector<unsigned char> bytes;
+};
+void write_ppm(std::ostream& out, const Image8& image);
+void write_png(std::ostream& out, const Image8& image, const Metadata& metadata);
+
+/// Throws InputError unless an image of this size can be in a file of this length, whose format packs at most
+/// `pixels_per_byte`: asked before memory is taken, so that a forged header cannot exhaust it.
+void check_image_size(const std::string& name, double width, double height, std::size_t file_length,
+                      double pixels_per_byte);
+
+}  // namespace castray

@@ -1,0 +1,110 @@
+#include "castray/image.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "castray/error.h"
+#include "castray/film.h"
+#include "core/files.h"
+#include "image/formats.h"
+
+namespace castray {
+
+namespace {
+
+Image8 quantised(const Image& image, const Display& display) {
+  const Image values = displayed(image, display);
+  Image8 result{image.width, image.height, {}};
+  result.bytes.reserve(3 * values.pixels.size());
+  for (const Vec3f& v : values.pixels)
+    for (int c = 0; c < 3; ++c) result.bytes.push_back(static_cast<unsigned char>(std::lround(255 * v[c])));
+  return result;
+}
+
+using Read = ImageFile (*)(const std::string& name, std::string_view bytes);
+using Write = void (*)(std::ostream& out, const Image& image, const Display& display,
+                       const Metadata& metadata);
+
+struct Format {
+  const char* suffix;
+  bool is_8bit;
+  Read read;
+  Write write;  ///< null: not from an image
+};
+
+ImageFile read_film_image(const std::string& name, std::string_view bytes) {
+  return {parse_film(name, bytes).image(), false, {}};
+}
+
+constexpr Format formats[] = {
+    {".ppm", true, read_ppm,
+     [](std::ostream& out, const Image& image, const Display& display, const Metadata&) {
+       write_ppm(out, quantised(image, display));
+     }},
+    {".png", true, read_png,
+     [](std::ostream& out, const Image& image, const Display& display, const Metadata& metadata) {
+       write_png(out, quantised(image, display), metadata);
+     }},
+    {".pfm", false, read_pfm,
+     [](std::ostream& out, const Image& image, const Display&, const Metadata&) { write_pfm(out, image); }},
+    {".hdr", false, read_hdr,
+     [](std::ostream& out, const Image& image, const Display&, const Metadata&) { write_hdr(out, image); }},
+    {".exr", false, read_exr,
+     [](std::ostream& out, const Image& image, const Display&, const Metadata& metadata) {
+       write_exr(out, image, metadata);
+     }},
+    {".film", false, read_film_image, nullptr},
+};
+
+const Format& format_of(const std::filesystem::path& file) {
+  std::string suffix = file.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string known;
+  for (const Format& format : formats) {
+    if (suffix == format.suffix) return format;
+    known += std::string(known.empty() ? "" : " ") + format.suffix;
+  }
+  throw InputError(
+      {file.string()},
+      (suffix.empty() ? "has no suffix" : "unknown image format '" + suffix + "'") + "; known are " + known);
+}
+
+}  // namespace
+
+std::size_t count_nonfinite(const Image& image) {
+  return static_cast<std::size_t>(
+      std::count_if(image.pixels.begin(), image.pixels.end(), [](const Vec3f& v) { return !is_finite(v); }));
+}
+
+void check_image_size(const std::string& name, double width, double height, std::size_t file_length,
+                      double pixels_per_byte) {
+  if (!(width >= 1 && height >= 1)) throw InputError({name}, "the image has no pixels");
+  if (width * height > 0x1p28) throw InputError({name}, "the image has more than 2^28 pixels");
+  if (width * height > 4096 + pixels_per_byte * static_cast<double>(file_length))
+    throw InputError({name}, "the file is too short for its size in pixels; it is truncated or corrupt");
+}
+
+ImageFile read_image(const std::filesystem::path& file) {
+  const Format& format = format_of(file);
+  const std::string bytes = read_file(file);
+  return format.read(file.string(), bytes);
+}
+
+void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
+                 const Metadata& metadata) {
+  const Format& format = format_of(file);
+  if (!format.write)
+    throw InputError({file.string()}, "a film holds samples, which an image has not; choose another format");
+  write_file(file, [&](std::ostream& out) { format.write(out, image, display, metadata); });
+}
+
+void check_output_image(const std::filesystem::path& file) {
+  check_writable(file);
+  format_of(file);
+}
+
+bool is_8bit_format(const std::filesystem::path& file) { return format_of(file).is_8bit; }
+bool is_film_format(const std::filesystem::path& file) { return !format_of(file).write; }
+
+}  // namespace castray
