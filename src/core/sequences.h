@@ -44,6 +44,13 @@ constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
   return hash32(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u));
 }
 
+/// The seed of dimension d < 4 of a block's scramble, from the block's seed.
+constexpr std::uint32_t dimension_seed(std::uint32_t seed, std::uint32_t d) {
+  constexpr std::uint32_t factor[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
+  const std::uint32_t v = seed * factor[d];
+  return v ^ (v >> 16);
+}
+
 /// Nested uniform scramble in which every bit depends on the lower ones.
 constexpr std::uint32_t owen_hash(std::uint32_t v, std::uint32_t seed) {
   v ^= v * 0x3d20adeau;

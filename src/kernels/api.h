@@ -3,14 +3,131 @@
 #include <stdint.h>
 
 // What the program and the kernels exchange: plain data and a table of functions, the same for every
-// instruction set.
+// instruction set. Everything is in scene space.
 
 namespace castray {
+
+/// A convex coplanar quad or a triangle of the flat list. Point p of its plane is inside where every
+/// edge . (p[u], p[v], 1) >= 0; edges are scaled so that this is a distance in the projection onto axes u and
+/// v.
+struct Facet {
+  float normal[3];  ///< unit; to the counter-clockwise side
+  float offset;     ///< normal . p of the plane's points
+  float edge[4][3];
+  float error;  ///< bound of the distance between a computed hit point and the exact facet
+  uint32_t material;
+  float corner[4][3];
+  uint32_t triangle[2];  ///< of the scene; equal for a triangle
+};
+inline constexpr int facet_floats = sizeof(Facet) / sizeof(float);
+
+/// Facets sorted by axis: those of axis a are facets[first[a]] to facets[first[a + 1] - 1].
+struct FacetList {
+  const Facet* facets;
+  uint32_t first[4];
+};
+
+/// The facets that can lie between two points of the scene, field by field, padded to a multiple of 16 with
+/// copies of the last one.
+struct BlockerList {
+  const float* corner[4][3];
+  const float* normal[3];
+  uint32_t count, padded;
+};
+
+enum MaterialKind : uint32_t { kind_diffuse, kind_microfacet, kind_conductor, kind_dielectric };
+
+struct KernelMaterial {
+  float kd[3];
+  float ks[3];  ///< microfacet: F0; conductor: reflectance
+  float emission[3];
+  float alpha;
+  float ior;
+  uint32_t kind;
+  uint32_t two_sided;  ///< emission
+  uint32_t specular;   ///< a mirror or smooth glass: no density to connect with
+  uint32_t texture;    ///< index + 1, or 0
+  float pad;
+};
+inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
+
+/// A parallelogram origin + a edge1 + b edge2, 0 <= a, b <= 1; or the triangle where a + b <= 1.
+struct KernelLight {
+  float origin[3];
+  float edge1[3], edge2[3];
+  float normal[3];  ///< unit; the side that emits
+  float emission[3];
+  float area;
+  uint32_t triangle;  ///< 1: a triangle
+  uint32_t two_sided;
+  float error;        ///< bound of the distance of a computed point from the exact light
+  float probability;  ///< of choosing this light by power
+  float cumulative;   ///< of the lights before this one
+  float pad[2];
+};
+inline constexpr int light_floats = sizeof(KernelLight) / sizeof(float);
+
+struct LightList {
+  const KernelLight* lights;
+  uint32_t count;
+};
+
+/// Sample (px,py) of the full image looks along corner + px * dx + py * dy.
+struct KernelCamera {
+  float position[3];
+  float corner[3], dx[3], dy[3];
+};
+
+struct KernelScene {
+  FacetList facets;    ///< all of the scene, if `use_list`
+  FacetList blockers;  ///< those that can lie between two points of the scene
+  BlockerList blocker_fields;
+  bool use_list;
+  const KernelMaterial* materials;
+  LightList lights;
+  KernelCamera camera;
+  float environment[3];
+  float camera_slack;  ///< list test: bound of the distance by which rounding moves a camera ray past a
+                       ///< facet's edge
+  float slack;         ///< the same for rays that start in the scene
+};
+
+struct KernelOptions {
+  bool sobol;
+  bool jitter;
+  bool fixed_roulette;
+  float survival;      ///< of fixed roulette
+  uint32_t max_depth;  ///< path edges; 0: no limit
+  int suffixes;        ///< of each tile's pixels whose paths are traced on; 0: no sharing
+  int light_points;    ///< shared by a tile
+  uint32_t seed;       ///< hashed; pixel_key starts from it
+};
+
+/// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.
+struct TileJob {
+  int x, y;  ///< top left pixel in the full image; may lie outside
+  int tiles;
+  uint64_t sample;
+};
+
+inline constexpr int tile_size = 8;
+inline constexpr int tile_pixels = tile_size * tile_size;
+inline constexpr int max_tiles = 8;  ///< of a job
+inline constexpr int batch_size = tile_pixels * max_tiles;
+
+/// One job's result: red, green and blue of pixel i of tile k at 64 k + i, and what it took.
+struct TileResult {
+  float* radiance[3];
+  uint64_t rays;
+};
 
 /// The functions of one instruction set.
 struct KernelApi {
   const char* name;  ///< "scalar", "sse4", "avx2", "avx512"
   int width;         ///< lanes
+  uint64_t scratch_bytes;
+  /// `scratch`: scratch_bytes, aligned to 64, of the calling thread.
+  void (*render_tiles)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
 };
 
 namespace scalar {

@@ -244,6 +244,35 @@ CASTRAY_INLINE Mask mask_of_bits(uint32_t b) {
 
 #endif
 
+/// Bit i of the result is bit 31 - i of `a`.
+CASTRAY_INLINE Uint reverse_bits(Uint a) {
+#if CASTRAY_WIDTH == 16
+  const __m512i low_nibbles = _mm512_set1_epi8(0x0f);
+  const __m512i reversed =
+      _mm512_broadcast_i32x4(_mm_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15));
+  const __m512i swap =
+      _mm512_broadcast_i32x4(_mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12));
+  const __m512i low = _mm512_shuffle_epi8(reversed, _mm512_and_si512((__m512i)a.v, low_nibbles));
+  const __m512i high = _mm512_shuffle_epi8(reversed, _mm512_and_si512((__m512i)(a.v >> 4), low_nibbles));
+  return (RawUint)_mm512_shuffle_epi8((__m512i)((RawUint)low << 4 | (RawUint)high), swap);
+#elif CASTRAY_WIDTH == 8
+  const __m256i low_nibbles = _mm256_set1_epi8(0x0f);
+  const __m256i reversed =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15));
+  const __m256i swap =
+      _mm256_broadcastsi128_si256(_mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12));
+  const __m256i low = _mm256_shuffle_epi8(reversed, _mm256_and_si256((__m256i)a.v, low_nibbles));
+  const __m256i high = _mm256_shuffle_epi8(reversed, _mm256_and_si256((__m256i)(a.v >> 4), low_nibbles));
+  return (RawUint)_mm256_shuffle_epi8((__m256i)((RawUint)low << 4 | (RawUint)high), swap);
+#else
+  a = (a >> 16) | (a << 16);
+  a = ((a & 0xff00ff00u) >> 8) | ((a & 0x00ff00ffu) << 8);
+  a = ((a & 0xf0f0f0f0u) >> 4) | ((a & 0x0f0f0f0fu) << 4);
+  a = ((a & 0xccccccccu) >> 2) | ((a & 0x33333333u) << 2);
+  return ((a & 0xaaaaaaaau) >> 1) | ((a & 0x55555555u) << 1);
+#endif
+}
+
 CASTRAY_INLINE Mask operator>(Float a, Float b) { return b < a; }
 CASTRAY_INLINE Mask operator>=(Float a, Float b) { return b <= a; }
 CASTRAY_INLINE bool any(Mask a) { return bits(a) != 0; }

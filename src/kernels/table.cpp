@@ -1,5 +1,6 @@
 #include "kernels/api.h"
 #include "kernels/lanes.h"
+#include "kernels/tiles.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -7,7 +8,7 @@ namespace castray::CASTRAY_ISA {
 #define CASTRAY_TEXT(x) CASTRAY_TEXT_(x)
 
 const KernelApi& kernel_api() {
-  static constexpr KernelApi api{CASTRAY_TEXT(CASTRAY_ISA), width};
+  static const KernelApi api{CASTRAY_TEXT(CASTRAY_ISA), width, scratch_bytes(), render_tiles};
   return api;
 }
 

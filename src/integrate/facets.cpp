@@ -1,0 +1,168 @@
+#include "integrate/facets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace castray {
+
+namespace {
+
+using Corners = std::vector<Vec3d>;
+
+constexpr double coplanar_tolerance =
+    0x1p-23;  ///< distance from the plane, scene space: what rounding to float leaves
+constexpr double ulp = 0x1p-24;
+
+Vec3d unit_normal(const Corners& c) { return normalize(cross(c[1] - c[0], c[2] - c[0])); }
+
+double distance_to_plane(const Corners& c, const Vec3d& p) { return std::abs(dot(unit_normal(c), p - c[0])); }
+
+bool is_convex(const Corners& c) {
+  const Vec3d n = unit_normal(c);
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    const Vec3d along = c[(k + 1) % c.size()] - c[k], next = c[(k + 2) % c.size()] - c[(k + 1) % c.size()];
+    if (dot(cross(along, next), n) <= 0) return false;
+  }
+  return true;
+}
+
+Corners corners_of(const Scene& scene, std::uint32_t triangle) {
+  Corners corners;
+  for (std::uint32_t v : scene.triangles[triangle]) corners.push_back(Vec3d(scene.positions[v]));
+  return corners;
+}
+
+/// The quad of two triangles that share an edge with opposite directions, in the first one's orientation.
+std::optional<Corners> merged(const Corners& a, const Corners& b) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      if (a[i] == b[(j + 1) % 3] && a[(i + 1) % 3] == b[j]) {
+        const Corners quad{a[i], b[(j + 2) % 3], a[(i + 1) % 3], a[(i + 2) % 3]};
+        const bool flat = distance_to_plane(a, b[(j + 2) % 3]) <= coplanar_tolerance &&
+                          distance_to_plane(b, a[(i + 2) % 3]) <= coplanar_tolerance;
+        if (flat && is_convex(quad)) return quad;
+      }
+  return std::nullopt;
+}
+
+int largest_axis(const Vec3d& n) {
+  const Vec3d a{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+}
+
+int axis_of(const Facet& f) { return largest_axis({f.normal[0], f.normal[1], f.normal[2]}); }
+
+/// How far the exact facet can be from the rounded plane, plus the rounding of a point computed on that
+/// plane: a dot product of three terms and an offset, a scaled step along the normal, and the final sum
+/// (gamma(8) at most).
+double plane_error(const Facet& f, const Corners& corners) {
+  const Vec3d n{f.normal[0], f.normal[1], f.normal[2]};
+  double error = 0, size = std::abs(f.offset);
+  for (const Vec3d& p : corners) {
+    error = std::max(error, std::abs(dot(n, p) - f.offset));
+    size = std::max(size, std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
+  }
+  return error + 8 * ulp * size;
+}
+
+Facet make_facet(const Corners& corners, std::uint32_t material, std::uint32_t first, std::uint32_t second) {
+  Facet f{};
+  const Vec3d n = unit_normal(corners);
+  double offset = 0;
+  for (const Vec3d& p : corners) offset += dot(n, p) / static_cast<double>(corners.size());
+  for (int c = 0; c < 3; ++c) f.normal[c] = static_cast<float>(n[c]);
+  f.offset = static_cast<float>(offset);
+  const int axis = axis_of(f), u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const double side = n[axis] > 0 ? 1 : -1;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Vec3d& a = corners[k % corners.size()];
+    const Vec3d& b = corners[(k + 1) % corners.size()];
+    const double du = b[u] - a[u], dv = b[v] - a[v], scale = side / std::hypot(du, dv);
+    f.edge[k][0] = static_cast<float>(-dv * scale);
+    f.edge[k][1] = static_cast<float>(du * scale);
+    f.edge[k][2] = static_cast<float>((dv * a[u] - du * a[v]) * scale);
+    for (int c = 0; c < 3; ++c) f.corner[k][c] = static_cast<float>(a[c]);
+  }
+  f.error = static_cast<float>(plane_error(f, corners));
+  f.material = material;
+  f.triangle[0] = first;
+  f.triangle[1] = second;
+  return f;
+}
+
+std::vector<Facet> merge_triangles(const Scene& scene) {
+  std::vector<Facet> facets;
+  const auto count = static_cast<std::uint32_t>(scene.triangles.size());
+  std::vector<bool> used(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (used[i]) continue;
+    const Corners corners = corners_of(scene, i);
+    std::optional<Corners> quad;
+    std::uint32_t j = i + 1;
+    for (; j < count; ++j)
+      if (!used[j] && scene.triangle_material[j] == scene.triangle_material[i])
+        if ((quad = merged(corners, corners_of(scene, j)))) break;
+    if (quad) used[j] = true;
+    facets.push_back(make_facet(quad ? *quad : corners, scene.triangle_material[i], i, quad ? j : i));
+  }
+  std::stable_sort(facets.begin(), facets.end(), [](auto& a, auto& b) { return axis_of(a) < axis_of(b); });
+  return facets;
+}
+
+bool can_block(const Facet& f, const Scene& scene) {
+  const Vec3d n{f.normal[0], f.normal[1], f.normal[2]};
+  double below = 0, above = 0;
+  for (const Vec3f& p : scene.positions) {
+    const double distance = dot(n, Vec3d(p)) - f.offset;
+    below = std::min(below, distance);
+    above = std::max(above, distance);
+  }
+  return below < -f.error && above > f.error;
+}
+
+FacetList view(const std::vector<Facet>& facets) {
+  FacetList list{facets.data(), {}};
+  for (const Facet& f : facets)
+    for (int axis = axis_of(f); axis < 3; ++axis) ++list.first[axis + 1];
+  return list;
+}
+
+}  // namespace
+
+FacetList Facets::list() const { return view(facets); }
+FacetList Facets::blocker_list() const { return view(blockers); }
+
+BlockerList Facets::blocker_field_list() const {
+  BlockerList list{};
+  list.count = static_cast<std::uint32_t>(blockers.size());
+  list.padded = (list.count + 15) / 16 * 16;
+  const float* field = blocker_fields.data();
+  for (auto& corner : list.corner)
+    for (const float*& component : corner) {
+      component = field;
+      field += list.padded;
+    }
+  for (const float*& component : list.normal) {
+    component = field;
+    field += list.padded;
+  }
+  return list;
+}
+
+Facets make_facets(const Scene& scene) {
+  Facets result;
+  result.facets = merge_triangles(scene);
+  for (const Facet& f : result.facets)
+    if (can_block(f, scene)) result.blockers.push_back(f);
+  const std::size_t padded = (result.blockers.size() + 15) / 16 * 16;
+  for (std::size_t field = 0; field < 15; ++field)
+    for (std::size_t i = 0; i < padded; ++i) {
+      const Facet& f = result.blockers[std::min(i, result.blockers.size() - 1)];
+      result.blocker_fields.push_back(field < 12 ? f.corner[field / 3][field % 3] : f.normal[field - 12]);
+    }
+  return result;
+}
+
+}  // namespace castray

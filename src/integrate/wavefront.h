@@ -1,0 +1,16 @@
+#pragma once
+
+#include "castray/render.h"
+#include "kernels/api.h"
+
+namespace castray {
+
+/// The instruction set `name` ("auto": the best that this processor has). Throws InputError if it is not to
+/// be had.
+const KernelApi& choose_kernel(const std::string& name);
+
+/// The fast integrator: same expected image as castRay. `options` complete: no automatic size left.
+RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
+                              const ProgressCallback& progress);
+
+}  // namespace castray
