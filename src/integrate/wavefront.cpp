@@ -32,9 +32,41 @@ KernelOptions kernel_options(const RenderOptions& options) {
   k.fixed_roulette = options.rr.has_value();
   k.survival = static_cast<float>(options.rr.value_or(1.0));
   k.max_depth = static_cast<std::uint32_t>(options.max_depth);
+  k.suffixes = options.reuse.automatic ? 32 : options.reuse.suffixes;
+  k.light_points = 8;
   k.seed =
       hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
   return k;
+}
+
+/// The tiles that cover a window in one pass. Where paths are shared the grid is shifted anew in each pass,
+/// so that no tile's edge stays in one place.
+struct TileGrid {
+  int shift_x = 0, shift_y = 0;  ///< of the grid, to the left and up, in pixels
+  int x0 = 0, y0 = 0;            ///< first tile
+  int width = 0, height = 0;     ///< in tiles
+
+  int jobs_per_row() const { return (width + max_tiles - 1) / max_tiles; }
+  int jobs() const { return jobs_per_row() * height; }
+  TileJob job(int i, std::uint64_t pass) const {
+    const int first = i % jobs_per_row() * max_tiles, x = x0 + first, y = y0 + i / jobs_per_row();
+    return {x * tile_size - shift_x, y * tile_size - shift_y, x, y, std::min(max_tiles, width - first), pass};
+  }
+};
+
+TileGrid tile_grid(const Window& window, const KernelOptions& options, std::uint64_t pass) {
+  TileGrid grid;
+  if (options.suffixes > 0) {
+    const std::uint32_t h =
+        hash_combine(hash_combine(options.seed, 0x5b1f7u), static_cast<std::uint32_t>(pass));
+    grid.shift_x = static_cast<int>(h % tile_size);
+    grid.shift_y = static_cast<int>(h / tile_size % tile_size);
+  }
+  grid.x0 = (window.x0 + grid.shift_x) / tile_size;
+  grid.y0 = (window.y0 + grid.shift_y) / tile_size;
+  grid.width = (window.x1 + grid.shift_x + tile_size - 1) / tile_size - grid.x0;
+  grid.height = (window.y1 + grid.shift_y + tile_size - 1) / tile_size - grid.y0;
+  return grid;
 }
 
 /// Adds a job's samples to the film where they lie in its window.
@@ -92,10 +124,6 @@ RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
   RenderResult result{Film(window, brightest), {}};
   const SampleRange range = options.samples.value_or(SampleRange{0, options.spp});
   const int threads = options.threads > 0 ? options.threads : omp_get_max_threads();
-  const int x0 = window.x0 / tile_size, y0 = window.y0 / tile_size;
-  const int tiles_x = (window.x1 + tile_size - 1) / tile_size - x0,
-            tiles_y = (window.y1 + tile_size - 1) / tile_size - y0;
-  const int jobs_x = (tiles_x + max_tiles - 1) / max_tiles;
   const auto start = Clock::now();
   std::uint64_t rays = 0;
   (void)progress;
@@ -107,11 +135,10 @@ RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
     TileResult tile_result{{radiance.data(), radiance.data() + batch_size, radiance.data() + 2 * batch_size},
                            0};
     for (std::uint64_t pass = range.first; pass < range.first + range.count; ++pass) {
+      const TileGrid grid = tile_grid(window, kernel_flags, pass);
 #pragma omp for schedule(dynamic)
-      for (int j = 0; j < jobs_x * tiles_y; ++j) {
-        const int first_tile = j % jobs_x * max_tiles;
-        const TileJob job{(x0 + first_tile) * tile_size, (y0 + j / jobs_x) * tile_size,
-                          std::min(max_tiles, tiles_x - first_tile), pass};
+      for (int j = 0; j < grid.jobs(); ++j) {
+        const TileJob job = grid.job(j, pass);
         kernel.render_tiles(data.view, kernel_flags, job, scratch.get(), tile_result);
         add_tiles(result.film, job, tile_result, nonfinite);
       }

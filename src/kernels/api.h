@@ -105,7 +105,8 @@ struct KernelOptions {
 
 /// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.
 struct TileJob {
-  int x, y;  ///< top left pixel in the full image; may lie outside
+  int x, y;            ///< top left pixel in the full image; may lie outside
+  int grid_x, grid_y;  ///< the first tile's place in the grid of tiles
   int tiles;
   uint64_t sample;
 };

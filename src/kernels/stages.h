@@ -75,8 +75,9 @@ CASTRAY_INLINE Vec seen_emission(const KernelMaterial& first, Uint material, Mas
   return select(shines, gather_vec(first.emission, material), dark);
 }
 
-/// The surface at each hit. Paths that miss collect the environment and end; `see_emission`: light sources
-/// are added.
+/// The surface at each hit. Paths that miss collect the environment and end; `see_emission`: light sources are added.
+/// With `keep_misses` every path keeps its place, and a miss is a black vertex without a normal.
+template <bool keep_misses>
 CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
                              Vertices& out, Radiance& radiance) {
   const Facet& facet = *c.scene.facets.facets;
@@ -97,21 +98,24 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
                      flip_by_sign(normal.z, -towards)};
     const Vec p = fma(facing, gather(&facet.error, record), fma(normal, -above, on_ray));
     const Uint material = gather(&facet.material, record) * uint32_t{material_floats};
-    const int n = out.count;
     if (see_emission)
       radiance.add(paths.slot + i, hit,
                    throughput * seen_emission(materials, material, towards < Float(0.f)));
     radiance.add(paths.slot + i, active & ~hit, throughput * broadcast(c.scene.environment));
-    compress_store(out.p, n, hit, p);
-    compress_store(out.normal, n, hit, facing);
-    compress_store(out.albedo, n, hit, gather_vec(materials.kd, material));
-    compress_store(out.throughput, n, hit, throughput);
-    compress_store(out.light_u + n, hit, load(paths.light_u + i));
-    compress_store(out.light_v + n, hit, load(paths.light_v + i));
-    compress_store(out.slot + n, hit, load(paths.slot + i));
-    compress_store(out.key + n, hit, load(paths.key + i));
-    compress_store(out.index + n, hit, load(paths.index + i));
-    out.count += count(hit);
+    const Mask kept = keep_misses ? active : hit;
+    const Vec none{Float(0.f), Float(0.f), Float(0.f)};
+    const Vec albedo = gather_vec(materials.kd, material);
+    const int n = out.count;
+    compress_store(out.p, n, kept, p);
+    compress_store(out.normal, n, kept, keep_misses ? select(hit, facing, none) : facing);
+    compress_store(out.albedo, n, kept, keep_misses ? select(hit, albedo, none) : albedo);
+    compress_store(out.throughput, n, kept, throughput);
+    compress_store(out.light_u + n, kept, load(paths.light_u + i));
+    compress_store(out.light_v + n, kept, load(paths.light_v + i));
+    compress_store(out.slot + n, kept, load(paths.slot + i));
+    compress_store(out.key + n, kept, load(paths.key + i));
+    compress_store(out.index + n, kept, load(paths.index + i));
+    out.count += count(kept);
   }
 }
 

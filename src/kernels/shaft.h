@@ -1,0 +1,88 @@
+#pragma once
+
+#include "kernels/api.h"
+#include "kernels/vec.h"
+
+// Visibility of one point to all points of a box at once: the hull of the two is a shaft, and most shafts are
+// empty.
+
+namespace castray::CASTRAY_ISA {
+
+struct Box {
+  float center[3], half[3];
+};
+
+inline constexpr int max_blockers = 128;
+
+/// What may lie between a point y and a box: pyramids with apex y over a facet. A point y + d is hidden by
+/// pyramid i if d is inside its side planes, edge . d >= -margin, and beyond its base, normal . d > base.
+struct Shaft {
+  int count = 0;
+  alignas(64) float edge[4][3][max_blockers + 16], margin[4][max_blockers + 16];
+  alignas(64) float normal[3][max_blockers + 16], base[max_blockers + 16];
+};
+
+/// The greatest a . (x - y) over the box, with y at distance `center` from its middle.
+CASTRAY_INLINE Float support(Vec a, Vec center, Vec half) {
+  return dot(a, center) + fma(abs(a.x), half.x, fma(abs(a.y), half.y, abs(a.z) * half.z));
+}
+
+/// Without fused operations: the cross product of (b, a) is the exact negative of that of (a, b), so that no
+/// light passes between two facets that share the edge.
+CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+CASTRAY_INLINE Float sum_abs(Vec a) { return abs(a.x) + abs(a.y) + abs(a.z); }
+
+/// The blockers whose pyramid from y meets the box.
+CASTRAY_INLINE void make_shaft(const BlockerList& blockers, const Vec& y, const Box& box, Shaft& out) {
+  out.count = 0;
+  const Vec center = broadcast(box.center) - y, half = broadcast(box.half);
+  for (uint32_t i = 0; i < blockers.count; i += width) {
+    Vec corner[4], edge[4];
+    Float margin[4];
+    for (int k = 0; k < 4; ++k)
+      corner[k] = Vec{load(blockers.corner[k][0] + i), load(blockers.corner[k][1] + i),
+                      load(blockers.corner[k][2] + i)} -
+                  y;
+    const Vec normal{load(blockers.normal[0] + i), load(blockers.normal[1] + i),
+                     load(blockers.normal[2] + i)};
+    const Float above = dot(normal, corner[0]);
+    const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
+                     flip_by_sign(normal.z, above)};
+    Mask meets = first_lanes((int)(blockers.count - i)) & (support(beyond, center, half) > abs(above));
+    for (int k = 0; k < 4; ++k) {
+      const Vec e = antisymmetric_cross(corner[k], corner[(k + 1) & 3]);
+      edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
+      margin[k] = sum_abs(corner[k]) * sum_abs(corner[(k + 1) & 3]) * Float(0x1p-20f);
+      meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
+    }
+    if (none(meets)) continue;
+    const int n = out.count;
+    for (int k = 0; k < 4; ++k) {
+      compress_store(out.edge[k][0] + n, meets, edge[k].x);
+      compress_store(out.edge[k][1] + n, meets, edge[k].y);
+      compress_store(out.edge[k][2] + n, meets, edge[k].z);
+      compress_store(out.margin[k] + n, meets, margin[k]);
+    }
+    compress_store(out.normal[0] + n, meets, beyond.x);
+    compress_store(out.normal[1] + n, meets, beyond.y);
+    compress_store(out.normal[2] + n, meets, beyond.z);
+    compress_store(out.base + n, meets, abs(above));
+    out.count += count(meets);
+  }
+}
+
+/// Where pyramid i hides y + d.
+CASTRAY_INLINE Mask hides(const Shaft& s, int i, const Vec& d) {
+  Float inside = Float(0.f);
+  for (int k = 0; k < 4; ++k) {
+    const Vec edge{Float(s.edge[k][0][i]), Float(s.edge[k][1][i]), Float(s.edge[k][2][i])};
+    inside = min(inside, dot(edge, d) + Float(s.margin[k][i]));
+  }
+  const Vec normal{Float(s.normal[0][i]), Float(s.normal[1][i]), Float(s.normal[2][i])};
+  return (inside >= Float(0.f)) & (dot(normal, d) > Float(s.base[i]));
+}
+
+}  // namespace castray::CASTRAY_ISA
