@@ -80,6 +80,9 @@ class Film {
   std::vector<std::uint32_t> counts_;
 };
 
+/// The items of the film's key, and "spp", the number of its sample indices.
+Metadata describe(const Film& film);
+
 /// Reads a .film file. Throws InputError if it is not one, is truncated or corrupt.
 Film read_film(const std::filesystem::path& file);
 

@@ -63,7 +63,7 @@ using Metadata = std::map<std::string, std::string>;
 struct ImageFile {
   Image image;
   bool encoded = false;  ///< `image` holds stored values in [0,1], not radiance
-  Metadata metadata;     ///< PNG and EXR
+  Metadata metadata;     ///< PNG, EXR and film
 };
 
 /// Reads .ppm (P3, P6), .png (8 and 16 bits), .pfm, .hdr, .exr (first part; half, float; scanlines, tiles) or

@@ -4,6 +4,7 @@
 
 #include "castray/error.h"
 #include "cli/commands.h"
+#include "cli/suggest.h"
 
 namespace castray::cli {
 
@@ -16,8 +17,10 @@ struct Subcommand {
 };
 
 constexpr Subcommand subcommands[] = {
-    // one line each, in alphabetical order of use: render, compare, bench, info, merge, convert
-    {nullptr, nullptr, nullptr},
+    // in the order of use: render, compare, bench, info, merge, convert
+    {"compare", "measure how an image differs from its reference", add_compare},
+    {"merge", "add films of disjoint sample ranges", add_merge},
+    {"convert", "write an image in another format", add_convert},
 };
 
 int run(int argc, char** argv) {
@@ -26,7 +29,6 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   for (const Subcommand& subcommand : subcommands) {
-    if (!subcommand.name) continue;
     CLI::App* sub = app.add_subcommand(subcommand.name, subcommand.description);
     Run run = subcommand.add(*sub);
     sub->callback([run, &exit_code] { exit_code = run(); });
@@ -36,7 +38,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
+    throw InputError(explain(app, error));
   }
   return exit_code;
 }

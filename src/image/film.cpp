@@ -110,4 +110,16 @@ void Film::merge(const Film& other) {
   nonfinite_samples += other.nonfinite_samples;
 }
 
+Metadata describe(const Film& film) {
+  Metadata metadata;
+  for (const std::string& item : items_of(film.key)) {
+    const std::size_t end = std::min(item.find('='), item.size());
+    if (end > 0) metadata[item.substr(0, end)] = item.substr(std::min(end + 1, item.size()));
+  }
+  std::uint64_t spp = 0;
+  for (const SampleRange& range : film.samples) spp += range.count;
+  metadata["spp"] = std::to_string(spp);
+  return metadata;
+}
+
 }  // namespace castray

@@ -33,7 +33,8 @@ struct Format {
 };
 
 ImageFile read_film_image(const std::string& name, std::string_view bytes) {
-  return {parse_film(name, bytes).image(), false, {}};
+  const Film film = parse_film(name, bytes);
+  return {film.image(), false, describe(film)};
 }
 
 constexpr Format formats[] = {

@@ -1,0 +1,52 @@
+#include <algorithm>
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "castray/error.h"
+#include "castray/film.h"
+#include "cli/commands.h"
+#include "cli/display_flags.h"
+
+namespace castray::cli {
+
+namespace {
+
+struct Convert {
+  std::filesystem::path input;
+  std::vector<std::filesystem::path> outputs;
+  DisplayFlags flags;
+
+  int run() const {
+    const Display display = flags.display();
+    for (const auto& output : outputs) check_output_image(output);
+    const bool any_8bit = std::any_of(outputs.begin(), outputs.end(), is_8bit_format);
+    if (flags.exposure != 0 && !any_8bit)
+      throw InputError("--exposure shapes .png and .ppm files only, and no output is one; leave it out");
+    if (!flags.tone.empty() && !any_8bit && !is_8bit_format(input))
+      throw InputError("--tone shapes .png and .ppm files only, and there is none; leave it out");
+    if (is_film_format(input) && std::any_of(outputs.begin(), outputs.end(), is_film_format)) {
+      const Film film = read_film(input);
+      for (const auto& output : outputs) write_film(output, film, display);
+      return 0;
+    }
+    const ImageFile file = read_image(input);
+    const Image radiance = decoded(file, display.tone);
+    for (const auto& output : outputs) {
+      warn_of_nonfinite(radiance, output);
+      write_image(output, radiance, display, file.metadata);
+    }
+    return 0;
+  }
+};
+
+}  // namespace
+
+Run add_convert(CLI::App& app) {
+  auto convert = std::make_shared<Convert>();
+  app.add_option("IMAGE", convert->input, "a .ppm, .png, .pfm, .hdr, .exr or .film file")->required();
+  add_outputs(app, convert->outputs);
+  convert->flags.add_to(app);
+  return [convert] { return convert->run(); };
+}
+
+}  // namespace castray::cli

@@ -1,0 +1,37 @@
+#include "cli/display_flags.h"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "castray/error.h"
+
+namespace castray::cli {
+
+void DisplayFlags::add_to(CLI::App& app) {
+  app.add_option("--exposure", exposure, "multiply 8-bit pictures by 2^STOPS")->type_name("STOPS");
+  app.add_option("--tone", tone, "curve of 8-bit pictures: srgb (default), linear, or gamma:G for value^G")
+      ->type_name("CURVE");
+}
+
+Display DisplayFlags::display() const {
+  if (!(std::abs(exposure) <= 100)) throw InputError("--exposure: give stops between -100 and 100");
+  return {tone.empty() ? ToneCurve{} : parse_tone_curve(tone), exposure};
+}
+
+void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& files) {
+  app.add_option("-o,--output", files, "write here; may be repeated; .ppm .png .pfm .hdr .exr or .film")
+      ->required()
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
+void warn_of_nonfinite(const Image& image, const std::filesystem::path& file) {
+  const std::size_t count = count_nonfinite(image);
+  if (count > 0 && is_8bit_format(file))
+    fmt::print(stderr, "castray: warning: {}: {} pixels are not finite; NaN is shown black\n", file.string(),
+               count);
+}
+
+}  // namespace castray::cli
