@@ -19,6 +19,7 @@ struct Subcommand {
 constexpr Subcommand subcommands[] = {
     // in the order of use: render, compare, bench, info, merge, convert
     {"compare", "measure how an image differs from its reference", add_compare},
+    {"info", "what a scene holds, what it needs, warnings", add_info},
     {"merge", "add films of disjoint sample ranges", add_merge},
     {"convert", "write an image in another format", add_convert},
 };

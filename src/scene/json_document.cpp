@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/text.h"
 
@@ -40,8 +41,7 @@ class PlaceCounter {
 /// tokens, so a cursor that walks over the tokens knows where each begins.
 class TreeBuilder : public nlohmann::json_sax<Json> {
  public:
-  TreeBuilder(std::string_view text, const std::string& file)
-      : text_(text), file_(file), places_(text, file) {}
+  TreeBuilder(std::string_view text, const std::string& file) : text_(text), places_(text, file) {}
 
   JsonNode root;
 
@@ -60,9 +60,8 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
 
   bool key(string_t& name) override {
     key_place_ = next_token();
-    for (const JsonNode& sibling : open_.back()->children)
-      if (sibling.key == name)
-        throw InputError(key_place_, "'" + printable(name) + "' is there twice; remove one");
+    if (!keys_.back().insert(name).second)
+      throw InputError(key_place_, "'" + printable(name) + "' is there twice; remove one");
     key_ = std::move(name);
     return true;
   }
@@ -71,8 +70,10 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
                    const nlohmann::detail::exception& error) override {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: what"
     std::string what = error.what();
-    const std::size_t prefix = what.find(": ");
-    if (prefix != std::string::npos) what.erase(0, prefix + 2);
+    for (const char* prefix_end : {"] ", ": "}) {
+      const std::size_t found = what.find(prefix_end);
+      if (found != std::string::npos) what.erase(0, found + 2);
+    }
     constexpr std::size_t longest = 200;
     if (what.size() > longest) what = what.substr(0, longest) + "...";
     std::replace_if(
@@ -146,6 +147,7 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
   bool open(Type type) {
     add({.type = type});
     open_.push_back(open_.empty() ? &root : &open_.back()->children.back());
+    keys_.emplace_back();
     if (open_.size() > greatest_depth)
       throw InputError(open_.back()->place,
                        "nested deeper than " + std::to_string(greatest_depth) + " levels");
@@ -155,14 +157,15 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
   bool close() {
     next_token();
     open_.pop_back();
+    keys_.pop_back();
     return true;
   }
 
   std::string_view text_;
-  std::string file_;
   PlaceCounter places_;
   std::size_t cursor_ = 0, token_begin_ = 0;
-  std::vector<JsonNode*> open_;  ///< a parent's children do not move while one of them is open
+  std::vector<JsonNode*> open_;              ///< a parent's children do not move while one of them is open
+  std::vector<std::set<std::string>> keys_;  ///< so far, of each open value
   std::string key_;
   SourcePlace key_place_;
 };

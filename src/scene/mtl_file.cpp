@@ -143,10 +143,15 @@ std::vector<std::uint16_t> read_mtl(const std::filesystem::path& file, SceneBuil
   return MtlReader(file, builder).read();
 }
 
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_directory(status);
+}
+
 std::filesystem::path resolve_path(std::string_view name, const std::filesystem::path& named_in) {
   const std::filesystem::path folder = named_in.parent_path();
-  if (std::filesystem::path as_written = folder / name; std::filesystem::exists(as_written))
-    return as_written;
+  if (std::filesystem::path as_written = folder / name; is_file(as_written)) return as_written;
   std::string slashes(name);
   std::ranges::replace(slashes, '\\', '/');
   return folder / slashes;

@@ -12,6 +12,9 @@ namespace castray {
 /// and returns their indices. Keys that mean nothing here go to Scene::ignored_keys.
 std::vector<std::uint16_t> read_mtl(const std::filesystem::path& file, SceneBuilder& builder);
 
+/// Whether there is something at that path that is no folder.
+bool is_file(const std::filesystem::path& path);
+
 /// A path as MTL and OBJ files write it, backslashes included, relative to the file that names it.
 std::filesystem::path resolve_path(std::string_view name, const std::filesystem::path& named_in);
 

@@ -185,7 +185,7 @@ class ObjReader {
     if (names.empty()) lines_.fail("mtllib needs a file name");
     while (!names.empty()) {
       std::size_t end = names.size();
-      while (!std::filesystem::exists(resolve_path(names.substr(0, end), file_))) {
+      while (!is_file(resolve_path(names.substr(0, end), file_))) {
         end = names.find_last_of(" \t", end - 1);
         if (end == std::string_view::npos || end == 0)
           lines_.fail(

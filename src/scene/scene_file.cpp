@@ -216,8 +216,13 @@ class SceneFileReader {
         transform = transform.then(read_step(step));
     const JsonNode& obj = reader.require("obj");
     const std::filesystem::path path = file_.parent_path() / read_string(obj, "\"obj\"");
-    if (!std::filesystem::exists(path))
-      throw InputError(obj.place, fmt::format("no such file: {}", printable(path.string())));
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    if (!std::filesystem::exists(status) || std::filesystem::is_directory(status))
+      throw InputError(
+          obj.place,
+          fmt::format("{}: {}", std::filesystem::exists(status) ? "a folder, not a file" : "no such file",
+                      printable(path.string())));
     Mesh mesh = read_obj(path, options, builder_);
     if (reader.find("transform")) apply(transform, mesh);
     builder_.add(std::move(mesh));

@@ -1,0 +1,105 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "castray/scene.h"
+#include "cli/commands.h"
+#include "core/text.h"
+
+namespace castray::cli {
+
+namespace {
+
+std::string text_of(const Vec3d& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
+
+std::string describe(const Material& material, const Scene& scene) {
+  std::string text;
+  switch (material.type) {
+    case MaterialType::diffuse:
+      text = fmt::format("diffuse, kd {}", text_of(material.kd));
+      break;
+    case MaterialType::microfacet:
+      text = fmt::format("microfacet, kd {}, ks {}, alpha {:g}", text_of(material.kd), text_of(material.ks),
+                         material.alpha);
+      break;
+    case MaterialType::conductor:
+      text =
+          fmt::format("conductor, reflectance {}, alpha {:g}", text_of(material.reflectance), material.alpha);
+      break;
+    case MaterialType::dielectric:
+      text = fmt::format("dielectric, ior {:g}, alpha {:g}", material.ior, material.alpha);
+      break;
+  }
+  if (material.kd_texture >= 0) {
+    const Texture& texture = scene.textures[static_cast<std::size_t>(material.kd_texture)];
+    text += fmt::format(", kd times {} ({} x {})", texture.name, texture.width, texture.height);
+  }
+  if (material.emits())
+    text += fmt::format(", emits {}{}", text_of(material.ke),
+                        material.two_sided_emission ? " on both sides" : "");
+  return text;
+}
+
+void print_bounds(const Scene& scene) {
+  Vec3f low = scene.positions.front(), high = low;
+  for (const Vec3f& p : scene.positions)
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  fmt::print("bounds     {} .. {}\n", text_of(scene.to_world(Vec3d(low))),
+             text_of(scene.to_world(Vec3d(high))));
+}
+
+void print_geometry(const Scene& scene) {
+  fmt::print("triangles  {}\n", scene.triangles.size());
+  fmt::print("vertices   {}\n", scene.positions.size());
+  if (scene.dropped_triangles > 0)
+    fmt::print("dropped    {} degenerate triangles (no area, or coordinates that are not finite)\n",
+               scene.dropped_triangles);
+  print_bounds(scene);
+  if (!scene.triangle_normals.empty()) fmt::print("normals    {} shading normals\n", scene.normals.size());
+}
+
+void print_lights(const Scene& scene) {
+  std::set<std::uint16_t> emitters;
+  for (std::uint32_t t : scene.lights) emitters.insert(scene.triangle_material[t]);
+  fmt::print("lights     {} triangles", scene.lights.size());
+  for (std::uint16_t m : emitters)
+    fmt::print("{} {}", m == *emitters.begin() ? ":" : ",", printable(scene.materials[m].name));
+  if (max_component(scene.environment) > 0) fmt::print("; environment {}", text_of(scene.environment));
+  fmt::print("\n");
+}
+
+void print_materials(const Scene& scene) {
+  fmt::print("materials  {}\n", scene.materials.size());
+  for (const Material& material : scene.materials)
+    fmt::print("  {}: {}\n", printable(material.name), describe(material, scene));
+}
+
+int print_info(const std::string& file) {
+  const Scene scene = load_scene(file);
+  fmt::print("scene      {}\n", file);
+  print_geometry(scene);
+  print_lights(scene);
+  fmt::print("image      {} x {}\n", scene.width, scene.height);
+  print_materials(scene);
+  for (const std::string& key : scene.ignored_keys) fmt::print("ignored    {}\n", key);
+  for (const std::string& warning : scene.warnings) fmt::print("warning    {}\n", warning);
+  return 0;
+}
+
+}  // namespace
+
+Run add_info(CLI::App& app) {
+  const auto file = std::make_shared<std::string>();
+  app.add_option("SCENE", *file, "scene .json or .obj")->required();
+  return [file] { return print_info(*file); };
+}
+
+}  // namespace castray::cli

@@ -1,0 +1,223 @@
+#include <catch2/catch.hpp>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "run_castray.h"
+#include "temporary_folder.h"
+
+namespace {
+
+struct File {
+  std::string name, content;
+};
+
+/// A faulty input and what must be said about it, behind "castray: error: ".
+struct Case {
+  std::string what;
+  std::vector<File> files;  ///< the first is the scene
+  std::string message;
+};
+
+const File good_obj{"good.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"};
+
+/// A scene whose line 2 is `line`.
+File scene_with(const std::string& line) {
+  return {"s.json", "{\n" + line + "\n  \"meshes\": [ { \"obj\": \"good.obj\" } ]\n}\n"};
+}
+
+File scene_with_mesh(const std::string& mesh) {
+  return {"s.json", "{\n  \"materials\": { \"white\": { \"type\": \"diffuse\" } },\n  \"meshes\": [\n    " +
+                        mesh + "\n  ]\n}\n"};
+}
+
+Case in_line(const std::string& what, const std::string& line, const std::string& message) {
+  return {what, {scene_with(line), good_obj}, message};
+}
+
+Case in_mesh(const std::string& what, const std::string& mesh, const std::string& message) {
+  return {what, {scene_with_mesh(mesh), good_obj}, message};
+}
+
+Case in_obj(const std::string& what, const std::string& obj, const std::string& message) {
+  return {what, {{"o.obj", obj}}, message};
+}
+
+Case in_mtl(const std::string& what, const std::string& mtl, const std::string& message) {
+  return {what,
+          {{"o.obj", "mtllib o.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}, {"o.mtl", mtl}},
+          message};
+}
+
+const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+const std::vector<Case> cases = {
+    // JSON syntax
+    {"empty file",
+     {{"s.json", ""}},
+     "s.json:1:1: not valid JSON: syntax error while parsing value - unexpected end of input; expected '[', "
+     "'{', or a literal"},
+    in_line("unclosed string", R"(  "camera)",
+            "s.json:2:10: not valid JSON: syntax error while parsing object key - invalid string: control "
+            "character U+000A (LF) must be escaped to \\u000A or \\n; last read: '\"camera<U+000A>'; "
+            "expected string literal"),
+    in_line("missing comma", R"(  "image": {})",
+            "s.json:3:10: not valid JSON: syntax error while parsing object - unexpected string literal; "
+            "expected '}'"),
+    in_line("a number too large", R"(  "image": { "width": 1e999 },)",
+            "s.json:2:27: not valid JSON: number overflow parsing '1e999'"),
+    {"cut short",
+     {{"s.json", "{ \"meshes\": ["}},
+     "s.json:1:14: not valid JSON: syntax error while parsing value - unexpected end of input; expected '[', "
+     "'{', or a literal"},
+    {"more behind the end",
+     {{"s.json", "{} {}"}},
+     "s.json:1:4: not valid JSON: syntax error while parsing value - unexpected '{'; expected end of input"},
+    {"not an object", {{"s.json", "[1, 2]"}}, "s.json:1:1: the scene must be an object, not an array"},
+    // Keys
+    in_line("unknown key", R"(  "camra": {},)",
+            "s.json:2:3: unknown key 'camra' in the scene; did you mean 'camera'?"),
+    in_line("unknown key, behind a comment", R"(  /* "x" { */ "camra": {},)",
+            "s.json:2:15: unknown key 'camra' in the scene; did you mean 'camera'?"),
+    in_line("key twice", R"(  "image": {}, "image": {},)", "s.json:2:16: 'image' is there twice; remove one"),
+    in_line("unknown camera key", R"(  "camera": { "fow": 40 },)",
+            "s.json:2:15: unknown key 'fow' in \"camera\"; did you mean 'fov'?"),
+    {"no meshes", {{"s.json", "{}"}}, "s.json:1:1: the scene needs the key 'meshes'"},
+    // Camera
+    in_line("camera without look_at", R"(  "camera": { "position": [0,0,0] },)",
+            "s.json:2:13: \"camera\" needs the key 'look_at'"),
+    in_line("position of two numbers", R"(  "camera": { "position": [0,0], "look_at": [0,0,1] },)",
+            "s.json:2:27: \"position\" must be an array of 3 numbers, but has 2"),
+    in_line("position with a string", R"(  "camera": { "position": [0,0,"x"], "look_at": [0,0,1] },)",
+            "s.json:2:32: \"position\"[2] must be a number, not a string"),
+    in_line("look_at = position", R"(  "camera": { "position": [0,0,1], "look_at": [0,0,1] },)",
+            "s.json:2:13: the camera's look_at must differ from its position"),
+    in_line("up along the view", R"(  "camera": { "position": [0,0,0], "look_at": [0,2,0] },)",
+            "s.json:2:13: the camera's up must not be parallel to its view direction"),
+    in_line("up is zero", R"(  "camera": { "position": [0,0,0], "look_at": [0,2,0], "up": [0,0,0] },)",
+            "s.json:2:13: the camera's up must not be (0,0,0)"),
+    in_line("fov 0", R"(  "camera": { "position": [0,0,0], "look_at": [0,0,1], "fov": 0 },)",
+            "s.json:2:63: \"fov\" must be greater than 0 and less than 180, not 0"),
+    in_line("fov 180", R"(  "camera": { "position": [0,0,0], "look_at": [0,0,1], "fov": 180.0 },)",
+            "s.json:2:63: \"fov\" must be greater than 0 and less than 180, not 180.0"),
+    // Image, render, environment
+    in_line("width 0", R"(  "image": { "width": 0 },)",
+            "s.json:2:23: \"width\" must be at least 1 and at most 65536, not 0"),
+    in_line("width with a fraction", R"(  "image": { "width": 10.5 },)",
+            "s.json:2:23: \"width\" must be a whole number, not 10.5"),
+    in_line("too many pixels", R"(  "image": { "width": 65536, "height": 65536 },)",
+            "s.json:2:12: 65536 x 65536 pixels are too many; at most 268435456 in all"),
+    in_line("render is no object", R"(  "render": 7,)",
+            "s.json:2:13: \"render\" must be an object, not a number"),
+    in_line("a flag that is an object", R"(  "render": { "spp": {} },)",
+            "s.json:2:22: \"spp\" must be a flag's value, not an object"),
+    in_line("negative radiance", R"(  "environment": { "radiance": [0,-1,0] },)",
+            "s.json:2:35: \"radiance\"[1] must be at least 0, not -1"),
+    // Materials
+    in_line("material without type", R"(  "materials": { "a": { "kd": [1,1,1] } },)",
+            "s.json:2:23: material 'a' needs the key 'type'"),
+    in_line("unknown type", R"(  "materials": { "a": { "type": "difuse" } },)",
+            "s.json:2:33: unknown material type 'difuse'; did you mean 'diffuse'?"),
+    in_line("key of another type", R"(  "materials": { "a": { "type": "diffuse", "ks": [1,1,1] } },)",
+            "s.json:2:44: unknown key 'ks' in material 'a' (diffuse); did you mean 'kd'?"),
+    in_line("kd above 1", R"(  "materials": { "a": { "type": "diffuse", "kd": [1,1.5,1] } },)",
+            "s.json:2:53: \"kd\"[1] must be at least 0 and at most 1, not 1.5"),
+    in_line("alpha and roughness",
+            R"(  "materials": { "a": { "type": "conductor", "alpha": 0.1, "roughness": 0.1 } },)",
+            "s.json:2:60: give \"roughness\" or \"alpha\" (= roughness^2), not both"),
+    in_line("ior 0", R"(  "materials": { "a": { "type": "dielectric", "ior": 0 } },)",
+            "s.json:2:54: \"ior\" must be greater than 0, not 0"),
+    in_line("two_sided_emission is a string",
+            R"(  "materials": { "a": { "type": "diffuse", "two_sided_emission": "yes" } },)",
+            "s.json:2:66: \"two_sided_emission\" must be true or false, not a string"),
+    // Meshes
+    in_mesh("material not found", R"({ "obj": "good.obj", "material": "whit" })",
+            "s.json:4:38: material 'whit' not found; did you mean 'white'?"),
+    in_mesh("missing OBJ file", R"({ "obj": "gone.obj" })", "s.json:4:14: no such file: gone.obj"),
+    in_mesh("OBJ is a folder", R"({ "obj": "." })", "s.json:4:14: a folder, not a file: ."),
+    in_mesh("scale 0", R"({ "obj": "good.obj", "transform": [ { "scale": [1,0,1] } ] })",
+            "s.json:4:52: \"scale\" must not be 0: nothing would be left"),
+    in_mesh("rotation about no axis", R"({ "obj": "good.obj", "transform": [ { "rotate": [0,0,0,30] } ] })",
+            "s.json:4:53: \"rotate\" needs an axis that is not (0,0,0)"),
+    in_mesh("rotation without angle", R"({ "obj": "good.obj", "transform": [ { "rotate": [0,0,1] } ] })",
+            "s.json:4:53: \"rotate\" must be an array of 4 numbers, but has 3"),
+    in_mesh("two keys in one step",
+            R"({ "obj": "good.obj", "transform": [ { "scale": 1, "translate": [0,0,0] } ] })",
+            "s.json:4:41: a transform step has one key: \"scale\", \"rotate\" or \"translate\""),
+    in_mesh("transform is an object", R"({ "obj": "good.obj", "transform": { "scale": 1 } })",
+            "s.json:4:39: \"transform\" must be an array, not an object"),
+    in_mesh("unknown kind of normals", R"({ "obj": "good.obj", "normals": "smooth" })",
+            "s.json:4:37: unknown \"normals\" 'smooth'; known: file, face"),
+    {"an OBJ without triangles in a scene",
+     {scene_with_mesh(R"({ "obj": "o.obj" })"), {"o.obj", three}},
+     "s.json: the scene has no triangle"},
+    // OBJ
+    in_obj("index 0", three + "f 1 2 0\n",
+           "o.obj:4: vertex index 0 is out of range: valid are 1 .. 3 and -3 .. -1"),
+    in_obj("index too large", three + "f 1 2 4\n",
+           "o.obj:4: vertex index 4 is out of range: valid are 1 .. 3 and -3 .. -1"),
+    in_obj("index too small", three + "f 1 2 -4\n",
+           "o.obj:4: vertex index -4 is out of range: valid are 1 .. 3 and -3 .. -1"),
+    in_obj("index beyond 2^32, a valid one modulo 2^32", three + "f 1 2 4294967299\n",
+           "o.obj:4: vertex index 4294967299 is out of range: valid are 1 .. 3 and -3 .. -1"),
+    in_obj("index beyond 2^64", three + "f 1 2 99999999999999999999/1\n",
+           "o.obj:4: vertex index 99999999999999999999 is out of range: valid are 1 .. 3 and -3 .. -1"),
+    in_obj("face in front of its vertices", "f 1 2 3\n" + three,
+           "o.obj:1: vertex index 1 is out of range: there is none before this line"),
+    in_obj("normal out of range", three + "vn 0 0 1\nf 1//1 2//1 3//2\n",
+           "o.obj:5: normal index 2 is out of range: valid are 1 .. 1 and -1 .. -1"),
+    in_obj("texture coordinate out of range", three + "f 1/1 2/1 3/1\n",
+           "o.obj:4: texture coordinate index 1 is out of range: there is none before this line"),
+    in_obj("a corner that is no number", three + "f 1 x 3\n", "o.obj:4: 'x' is not a vertex index"),
+    in_obj("a corner with four parts", three + "vt 0\nvn 0 0 1\nf 1/1/1/1 2 3\n",
+           "o.obj:6: '1/1/1/1' is not a corner; write v, v/vt, v//vn or v/vt/vn"),
+    in_obj("a face of two corners", three + "f 1 2\n", "o.obj:4: a face needs at least 3 corners, but has 2"),
+    in_obj("a face of none", three + "f\n", "o.obj:4: a face needs at least 3 corners, but has 0"),
+    in_obj("a vertex of two numbers", "v 1 2\n", "o.obj:1: 'v' needs more numbers"),
+    in_obj("a vertex that is no number", "# x\n\nv 1 2 x3\n", "o.obj:3: 'x3' is not a number, in 'v'"),
+    in_obj("a number with something behind", "v 1 2 3,5\n", "o.obj:1: '3,5' is not a number, in 'v'"),
+    in_obj("a vertex out of double's range", "v 1 2 1e999\n", "o.obj:1: '1e999' is out of range in 'v'"),
+    in_obj("nothing in it", "", "o.obj: the scene has no triangle"),
+    in_obj("binary",
+           std::string("\x7f"
+                       "ELF\0\0\1\2\n\xff\xfe",
+                       12),
+           "o.obj: the scene has no triangle"),
+    in_obj("all flat", three + "f 1 1 2\nf 1 2 2\n",
+           "o.obj: the scene has no triangle left: all 2 are degenerate (no area, or coordinates that are "
+           "not finite)"),
+    in_obj("all NaN", "v nan 0 0\nv inf 0 0\nv 0 0 0\nf 1 2 3\n",
+           "o.obj: the scene has no triangle left: all 1 are degenerate (no area, or coordinates that are "
+           "not finite)"),
+    // MTL
+    in_obj("missing MTL", "mtllib gone.mtl\n" + three + "f 1 2 3\n",
+           "o.obj:1: mtllib: no such file: gone.mtl"),
+    in_obj("usemtl without mtllib", "usemtl a\n" + three + "f 1 2 3\n",
+           "o.obj:1: material 'a' not found: no mtllib before this line; name one, or give the mesh a "
+           "\"material\" in a scene file"),
+    in_mtl("material not in the MTL", "newmtl b\n", "o.obj:2: material 'a' not found; did you mean 'b'?"),
+    in_mtl("a key in front of newmtl", "Kd 1 1 1\n", "o.mtl:1: 'Kd' in front of the first newmtl"),
+    in_mtl("Kd above 1", "newmtl a\nKd 2 1 1\n", "o.mtl:2: Kd must be in 0 .. 1, not 2"),
+    in_mtl("Kd of two numbers", "newmtl a\nKd 1 1\n", "o.mtl:2: 'Kd' needs more numbers"),
+    in_mtl("Ke that is not finite", "newmtl a\nKe nan 1 1\n",
+           "o.mtl:2: Ke must be finite and at least 0, not nan"),
+    in_mtl("newmtl without name", "newmtl\n", "o.mtl:1: newmtl needs a name"),
+    // Files
+    {"another suffix", {{"s.ply", ""}}, "s.ply: not a scene: its name must end in .json or .obj"},
+};
+
+}  // namespace
+
+TEST_CASE("a fault in a scene gives one line with place and remedy, and exit code 2") {
+  for (const Case& faulty : cases) {
+    INFO(faulty.what);
+    const TemporaryFolder folder;
+    for (const File& file : faulty.files) std::ofstream(folder / file.name, std::ios::binary) << file.content;
+    const RunResult outcome = run_castray({"info", faulty.files.front().name}, folder.path());
+    CHECK(outcome.err == "castray: error: " + faulty.message + "\n");
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.out == "");
+    CHECK(outcome.peak_kilobytes < 200'000);
+  }
+}
