@@ -30,7 +30,8 @@ struct Material {
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
 };
 
-/// An image on a surface: linear RGB, top row first, repeated over the plane, bilinear.
+/// An image on a surface: linear RGB, top row first, repeated over the plane, bilinear. Its lower left corner
+/// is (u,v) = (0,0), its upper right one (1,1).
 struct Texture {
   std::string name;
   int width = 0, height = 0;

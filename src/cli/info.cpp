@@ -52,8 +52,14 @@ void print_bounds(const Scene& scene) {
       low[i] = std::min(low[i], p[i]);
       high[i] = std::max(high[i], p[i]);
     }
-  fmt::print("bounds     {} .. {}\n", text_of(scene.to_world(Vec3d(low))),
-             text_of(scene.to_world(Vec3d(high))));
+  // Coordinates are known to half a float's last digit; what is less than that is shown as 0.
+  const auto world = [&](const Vec3f& corner) {
+    Vec3d p = scene.to_world(Vec3d(corner));
+    for (int i = 0; i < 3; ++i)
+      if (std::abs(p[i]) < scene.unit * 0x1p-24) p[i] = 0;
+    return text_of(p);
+  };
+  fmt::print("bounds     {} .. {}\n", world(low), world(high));
 }
 
 void print_geometry(const Scene& scene) {

@@ -30,6 +30,15 @@ std::string_view take_line(std::string_view& text) {
 
 }  // namespace
 
+std::optional<double> parse_number(std::string_view word, bool* out_of_range) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.begin(), word.end(), value);
+  if (out_of_range) *out_of_range = error == std::errc::result_out_of_range;
+  if (error != std::errc() || end != word.end()) return std::nullopt;
+  return value;
+}
+
 LineReader::LineReader(std::string_view text, const std::string& file)
     : text_(without_bom(text)), file_(file) {}
 
@@ -69,6 +78,13 @@ std::string_view LineReader::word() {
   return found;
 }
 
+std::string_view LineReader::peek() {
+  const std::string_view line = line_;
+  const std::string_view found = word();
+  line_ = line;
+  return found;
+}
+
 std::string_view LineReader::rest() {
   const std::string_view found = trimmed(line_);
   line_ = {};
@@ -76,16 +92,13 @@ std::string_view LineReader::rest() {
 }
 
 std::optional<double> LineReader::number(std::string_view of) {
-  std::string_view digits = word();
+  const std::string_view digits = word();
   if (digits.empty()) return std::nullopt;
-  const std::string_view shown = digits;
-  if (digits.front() == '+') digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.begin(), digits.end(), value);
-  if (error == std::errc::result_out_of_range)
-    fail(fmt::format("'{}' is out of range in '{}'", printable(shown), of));
-  if (error != std::errc() || end != digits.end())
-    fail(fmt::format("'{}' is not a number, in '{}'", printable(shown), of));
+  bool out_of_range = false;
+  const std::optional<double> value = parse_number(digits, &out_of_range);
+  if (!value)
+    fail(fmt::format("'{}' is {}, in '{}'", printable(digits), out_of_range ? "out of range" : "not a number",
+                     of));
   return value;
 }
 

@@ -8,6 +8,10 @@
 
 namespace castray {
 
+/// A whole word as a number, "nan" and "inf" among them; nothing where it is none. Sets `out_of_range` where
+/// it is too large or too small for a double.
+std::optional<double> parse_number(std::string_view word, bool* out_of_range = nullptr);
+
 /// Walks over the lines of an OBJ or MTL text and the words of each line. Lines may end in LF, CR or CRLF; a
 /// backslash in front of the line's end continues it; a '#' in front of a word begins a comment.
 class LineReader {
@@ -19,6 +23,8 @@ class LineReader {
 
   /// The next word of the line, or empty.
   std::string_view word();
+  /// The same, but stays in front of it.
+  std::string_view peek();
   /// What is left of the line without surrounding space; for names that may contain spaces.
   std::string_view rest();
 

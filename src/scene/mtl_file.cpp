@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "core/text.h"
 #include "scene/line_reader.h"
+#include "scene/texture_statement.h"
 
 namespace castray {
 
@@ -22,6 +23,8 @@ struct MtlMaterial {
   Vec3d ks{}, ke{};
   std::optional<double> ns{}, ni{}, roughness{}, metallic{};
   std::optional<int> illum{};
+  int kd_texture = -1;
+  UvMap uv_map{};
 };
 
 /// DESIGN's order: conductor, dielectric, microfacet, diffuse.
@@ -33,7 +36,11 @@ Material to_material(const MtlMaterial& mtl) {
   Material material;
   material.name = mtl.name;
   material.ke = mtl.ke;
-  if (mtl.kd) material.kd = *mtl.kd;
+  material.kd_texture = mtl.kd_texture;
+  if (mtl.kd)
+    material.kd = *mtl.kd;
+  else if (mtl.kd_texture >= 0)
+    material.kd = Vec3d(1.0);
   if (mtl.roughness)
     material.alpha = *mtl.roughness * *mtl.roughness;
   else if (mtl.ns)
@@ -64,44 +71,36 @@ class MtlReader {
     while (lines_.next_line()) read_statement();
     std::vector<std::uint16_t> indices;
     for (const MtlMaterial& material : materials_)
-      indices.push_back(builder_.add_material(to_material(material)));
+      indices.push_back(builder_.add_material(to_material(material), material.uv_map));
     return indices;
   }
 
  private:
+  // clang-format off
   void read_statement() {
     const std::string key(lines_.word());
     if (key == "newmtl") return begin_material();
     if (materials_.empty()) lines_.fail(fmt::format("'{}' in front of the first newmtl", printable(key)));
     MtlMaterial& material = materials_.back();
-    if (key == "Kd")
-      material.kd = color(key, 1);
-    else if (key == "Ks")
-      material.ks = color(key, 1);
-    else if (key == "Ke")
-      material.ke = color(key, Range::none);
-    else if (key == "Ns")
-      material.ns = number(key, Range::none);
-    else if (key == "Ni")
-      material.ni = number(key, Range::none);
-    else if (key == "Pr")
-      material.roughness = number(key, 1);
-    else if (key == "Pm")
-      material.metallic = number(key, 1);
-    else if (key == "illum")
-      material.illum = static_cast<int>(number(key, 10));
-    else
-      ignore(key);
+    if (key == "Kd") material.kd = color(key, 1);
+    else if (key == "Ks") material.ks = color(key, 1);
+    else if (key == "Ke") material.ke = color(key, no_limit);
+    else if (key == "Ns") material.ns = number(key, no_limit);
+    else if (key == "Ni") material.ni = number(key, no_limit);
+    else if (key == "Pr") material.roughness = number(key, 1);
+    else if (key == "Pm") material.metallic = number(key, 1);
+    else if (key == "illum") material.illum = static_cast<int>(number(key, 10));
+    else if (key == "map_Kd") read_texture(material);
+    else builder_.ignore(file_, key);
   }
+  // clang-format on
 
-  struct Range {
-    static constexpr double none = std::numeric_limits<double>::max();
-  };
+  static constexpr double no_limit = std::numeric_limits<double>::max();
 
   double check(const std::string& key, double value, double greatest) {
     if (value >= 0 && value <= greatest) return value;
-    lines_.fail(greatest == Range::none ? fmt::format("{} must be finite and at least 0, not {}", key, value)
-                                        : fmt::format("{} must be in 0 .. {}, not {}", key, greatest, value));
+    lines_.fail(greatest == no_limit ? fmt::format("{} must be finite and at least 0, not {}", key, value)
+                                     : fmt::format("{} must be in 0 .. {}, not {}", key, greatest, value));
   }
 
   double number(const std::string& key, double greatest) {
@@ -123,11 +122,13 @@ class MtlReader {
     materials_.push_back({.name = name});
   }
 
-  void ignore(const std::string& key) {
-    std::vector<std::string>& ignored = builder_.scene.ignored_keys;
-    const std::string text = file_.string() + ": " + printable(key);
-    constexpr std::size_t most = 100;
-    if (ignored.size() < most && std::ranges::find(ignored, text) == ignored.end()) ignored.push_back(text);
+  void read_texture(MtlMaterial& material) {
+    const TextureStatement texture = read_texture_statement(lines_);
+    for (const std::string& option : texture.ignored_options) builder_.ignore(file_, "map_Kd " + option);
+    const std::filesystem::path path = resolve_path(texture.file, file_);
+    if (!is_file(path)) lines_.fail(fmt::format("map_Kd: no such file: {}", printable(path.string())));
+    material.kd_texture = builder_.add_texture(path);
+    material.uv_map = texture.uv_map;
   }
 
   std::filesystem::path file_;

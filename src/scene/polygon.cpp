@@ -104,7 +104,7 @@ void triangulate(const std::vector<Vec3d>& corners, std::vector<std::array<std::
       ++tried;
     }
   }
-  triangles.push_back({ring.last(i), i, ring.next(i)});
+  triangles.push_back({ring.next(i), ring.last(i), i});
 }
 
 }  // namespace castray

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "castray/error.h"
+#include "castray/image.h"
+#include "core/text.h"
 
 namespace castray {
 
@@ -38,20 +40,21 @@ void keep_marked(std::vector<T>& values, const std::vector<bool>& keep) {
 }
 
 /// Leaves only the positions that triangles use.
-void drop_unused_positions(Mesh& mesh) {
+template <class Point>
+void drop_unused(std::vector<Point>& positions, std::vector<Index3>& triangles) {
   constexpr std::uint32_t used = 0;
-  std::vector<std::uint32_t> renumbered(mesh.positions.size(), Scene::no_index);
-  for (const Index3& corners : mesh.triangles)
+  std::vector<std::uint32_t> renumbered(positions.size(), Scene::no_index);
+  for (const Index3& corners : triangles)
     for (std::uint32_t i : corners) renumbered[i] = used;
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < renumbered.size(); ++i) {
     if (renumbered[i] == Scene::no_index) continue;
-    mesh.positions[count] = mesh.positions[i];
+    positions[count] = positions[i];
     renumbered[i] = count++;
   }
   if (count == renumbered.size()) return;
-  mesh.positions.resize(count);
-  for (Index3& corners : mesh.triangles)
+  positions.resize(count);
+  for (Index3& corners : triangles)
     for (std::uint32_t& i : corners) i = renumbered[i];
 }
 
@@ -62,13 +65,35 @@ bool has_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
 
 }  // namespace
 
-std::uint16_t SceneBuilder::add_material(Material material) {
+std::uint16_t SceneBuilder::add_material(Material material, const UvMap& uv_map) {
   constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
   if (scene.materials.size() >= most)
     throw InputError(SourcePlace{scene.file.string()},
                      "more than " + std::to_string(most) + " materials; use fewer");
   scene.materials.push_back(std::move(material));
+  uv_maps_.push_back(uv_map);
   return static_cast<std::uint16_t>(scene.materials.size() - 1);
+}
+
+int SceneBuilder::add_texture(const std::filesystem::path& file) {
+  const auto [found, is_new] = textures_.try_emplace(file, static_cast<int>(scene.textures.size()));
+  if (is_new) {
+    const ImageFile read = read_image(file);
+    Image image = decoded(read, ToneCurve{});
+    for (const Vec3f& texel : image.pixels)
+      if (!is_finite(texel) || std::min({texel.x, texel.y, texel.z}) < 0)
+        throw InputError(SourcePlace{file.string()}, "a texture's values must be finite and at least 0");
+    scene.textures.push_back({file.filename().string(), image.width, image.height, std::move(image.pixels)});
+  }
+  return found->second;
+}
+
+void SceneBuilder::ignore(const std::filesystem::path& file, std::string_view key) {
+  constexpr std::size_t most = 100;
+  const std::string text = file.string() + ": " + printable(key);
+  if (scene.ignored_keys.size() < most &&
+      std::ranges::find(scene.ignored_keys, text) == scene.ignored_keys.end())
+    scene.ignored_keys.push_back(text);
 }
 
 void SceneBuilder::add(Mesh&& mesh) {
@@ -104,11 +129,13 @@ void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
   throw InputError(SourcePlace{scene.file.string()}, "the scene has no triangle" + dropped);
 }
 
-void SceneBuilder::drop_nonfinite() {
+void SceneBuilder::drop_unusable() {
   std::vector<bool> keep(mesh_.triangles.size());
-  for (std::size_t t = 0; t < keep.size(); ++t)
-    keep[t] = std::ranges::all_of(mesh_.triangles[t],
-                                  [&](std::uint32_t i) { return is_finite(mesh_.positions[i]); });
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const Vec3d &a = mesh_.positions[mesh_.triangles[t][0]], &b = mesh_.positions[mesh_.triangles[t][1]],
+                &c = mesh_.positions[mesh_.triangles[t][2]];
+    keep[t] = is_finite(a) && is_finite(b) && is_finite(c) && a != b && b != c && c != a;
+  }
   keep_triangles(keep);
 }
 
@@ -143,12 +170,13 @@ void SceneBuilder::drop_flat() {
 }
 
 Scene SceneBuilder::finish() {
-  drop_nonfinite();
-  drop_unused_positions(mesh_);
+  drop_unusable();
+  drop_unused(mesh_.positions, mesh_.triangles);
   find_scene_space();
   round_positions();
   mesh_.positions = {};
   drop_flat();
+  drop_unused(scene.positions, mesh_.triangles);
   scene.triangles = std::move(mesh_.triangles);
   scene.triangle_material = std::move(mesh_.triangle_material);
   scene.normals = std::move(mesh_.normals);

@@ -1,11 +1,22 @@
 #pragma once
 
-#include <string>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <string_view>
+#include <vector>
 
 #include "castray/scene.h"
 #include "scene/mesh.h"
 
 namespace castray {
+
+/// How a material's texture lies on the surface: (u,v) -> scale * (u,v) + offset.
+struct UvMap {
+  std::array<double, 2> scale{1, 1}, offset{0, 0};
+  bool is_identity() const { return *this == UvMap{}; }
+  friend bool operator==(const UvMap&, const UvMap&) = default;
+};
 
 /// Gathers a scene's meshes in double, and moves them into scene space at the end.
 class SceneBuilder {
@@ -13,7 +24,14 @@ class SceneBuilder {
   Scene scene;  ///< all but what `finish` fills in: geometry, lights, the camera's place
 
   /// Adds a material and returns its index. Throws InputError where there are too many to be numbered.
-  std::uint16_t add_material(Material material);
+  std::uint16_t add_material(Material material, const UvMap& uv_map = {});
+  const UvMap& uv_map(std::uint16_t material) const { return uv_maps_[material]; }
+
+  /// The index of a file's texture, read when first asked for. Throws InputError.
+  int add_texture(const std::filesystem::path& file);
+
+  /// Notes a key of a file that means nothing here.
+  void ignore(const std::filesystem::path& file, std::string_view key);
 
   void add(Mesh&& mesh);
 
@@ -22,13 +40,15 @@ class SceneBuilder {
   Scene finish();
 
  private:
-  void drop_nonfinite();
+  void drop_unusable();
   void find_scene_space();
   void round_positions();
-  void drop_flat();
+  void drop_flat();  ///< of those that rounding has made flat, too
   void keep_triangles(const std::vector<bool>& keep);
 
   Mesh mesh_;
+  std::vector<UvMap> uv_maps_;  ///< one a material
+  std::map<std::filesystem::path, int> textures_;
 };
 
 }  // namespace castray

@@ -177,7 +177,7 @@ const std::vector<Case> cases = {
     in_obj("a vertex of two numbers", "v 1 2\n", "o.obj:1: 'v' needs more numbers"),
     in_obj("a vertex that is no number", "# x\n\nv 1 2 x3\n", "o.obj:3: 'x3' is not a number, in 'v'"),
     in_obj("a number with something behind", "v 1 2 3,5\n", "o.obj:1: '3,5' is not a number, in 'v'"),
-    in_obj("a vertex out of double's range", "v 1 2 1e999\n", "o.obj:1: '1e999' is out of range in 'v'"),
+    in_obj("a vertex out of double's range", "v 1 2 1e999\n", "o.obj:1: '1e999' is out of range, in 'v'"),
     in_obj("nothing in it", "", "o.obj: the scene has no triangle"),
     in_obj("binary",
            std::string("\x7f"
