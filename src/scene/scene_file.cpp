@@ -174,7 +174,7 @@ class SceneFileReader {
   }
 
   Transform read_step(const JsonNode& node) {
-    const ObjectReader step(node, "a transform step", keys_of("transform step"));
+    const ObjectReader step(node, "a transform step", keys_of("transform_step"));
     if (node.children.size() != 1)
       throw InputError(node.place, "a transform step has one key: \"scale\", \"rotate\" or \"translate\"");
     if (const JsonNode* scale = step.find("scale")) {
@@ -246,7 +246,7 @@ const std::vector<SceneSection>& scene_sections() {
       {"conductor", {"type", "reflectance", "roughness", "alpha", "ke", "two_sided_emission"}},
       {"dielectric", {"type", "ior", "roughness", "alpha", "ke", "two_sided_emission"}},
       {"mesh", {"obj", "material", "transform", "normals"}},
-      {"transform step", {"scale", "rotate", "translate"}},
+      {"transform_step", {"scale", "rotate", "translate"}},
   };
   return sections;
 }

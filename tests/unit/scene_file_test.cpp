@@ -1,0 +1,132 @@
+#include <catch2/catch.hpp>
+
+#include <fstream>
+#include <string>
+
+#include "castray/scene.h"
+#include "temporary_folder.h"
+
+using namespace castray;
+
+namespace {
+
+/// A scene whose mesh is the triangle (0,0,0) (1,0,0) (0,1,0), facing +z, moved by `transform`.
+Scene load_moved(const std::string& transform) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.obj")
+      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1/1 2/2/1 3/3/1\n";
+  std::ofstream(folder / "s.json") << R"({ "meshes": [ { "obj": "t.obj", "transform": [)" + transform +
+                                          "] } ] }";
+  return load_scene(folder / "s.json");
+}
+
+Scene load_text(const std::string& json) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(folder / "s.json") << json;
+  return load_scene(folder / "s.json");
+}
+
+Vec3d corner(const Scene& scene, std::size_t i) {
+  return scene.to_world(Vec3d(scene.positions[scene.triangles[0][i]]));
+}
+
+Vec3d normal(const Scene& scene) {
+  return normalize(cross(corner(scene, 1) - corner(scene, 0), corner(scene, 2) - corner(scene, 0)));
+}
+
+void check_near(const Vec3d& found, const Vec3d& expected) {
+  INFO(found.x << ' ' << found.y << ' ' << found.z);
+  for (int i = 0; i < 3; ++i) CHECK(found[i] == Approx(expected[i]).margin(1e-6));
+}
+
+}  // namespace
+
+TEST_CASE("transform steps apply in order") {
+  const Scene scene =
+      load_moved(R"({ "scale": [2, 3, 4] }, { "rotate": [0, 0, 1, 90] }, { "translate": [10, 20, 30] })");
+  check_near(corner(scene, 0), {10, 20, 30});
+  check_near(corner(scene, 1), {10, 22, 30});
+  check_near(corner(scene, 2), {7, 20, 30});
+  check_near(normal(scene), {0, 0, 1});
+  const Scene other =
+      load_moved(R"({ "translate": [10, 20, 30] }, { "scale": 2 }, { "rotate": [0, 5, 0, -90] })");
+  check_near(corner(other, 0), {-60, 40, 20});
+  check_near(corner(other, 1), {-60, 40, 22});
+  check_near(normal(other), {-1, 0, 0});
+}
+
+TEST_CASE("rotations about any axis keep lengths, turn by the angle, and quarter turns are exact") {
+  const Scene scene = load_moved(R"({ "rotate": [1, 1, 1, 120] })");  // x -> y -> z -> x
+  check_near(corner(scene, 1), {0, 1, 0});
+  check_near(corner(scene, 2), {0, 0, 1});
+  CHECK(corner(load_moved(R"({ "rotate": [0, 0, 1, 450] })"), 1) == Vec3d{0, 1, 0});
+}
+
+TEST_CASE("a mirroring transform keeps the outward side outward") {
+  for (const char* mirror : {R"({ "scale": [-1, 1, 1] })", R"({ "scale": [1, -1, 1] })"}) {
+    const Scene scene = load_moved(mirror);
+    check_near(normal(scene), {0, 0, 1});
+    check_near(Vec3d(scene.normals[scene.triangle_normals[0][0]]), {0, 0, 1});
+  }
+  // The triangle seen in a mirror at z = 0 faces the other way, as its mirror image does.
+  const Scene scene = load_moved(R"({ "scale": [1, 1, -1] })");
+  check_near(normal(scene), {0, 0, -1});
+  check_near(Vec3d(scene.normals[scene.triangle_normals[0][0]]), {0, 0, -1});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto uv = scene.uvs[scene.triangle_uvs[0][i]];
+    check_near(corner(scene, i), {uv[0], uv[1], 0});
+  }
+}
+
+TEST_CASE("shading normals follow a stretched surface") {
+  const Scene scene = load_moved(R"({ "rotate": [0, 1, 0, 45] }, { "scale": [1, 1, 3] })");
+  check_near(Vec3d(scene.normals[scene.triangle_normals[0][0]]), normal(scene));
+}
+
+TEST_CASE("a scene file says what is in the scene") {
+  const Scene scene = load_text(R"({
+    // comments and a trailing one
+    "image": { "width": 10, "height": 20 },
+    "render": { "spp": 16, "jitter": false, "crop": [0, 1, 2, 3], "rr": "auto", "epsilon": 1e-5 },
+    "materials": { "m": { "type": "conductor", "roughness": 0.5, "reflectance": [1, 0.5, 0], "ke": [1, 2, 3],
+                          "two_sided_emission": true } }, /* here */
+    "meshes": [ { "obj": "t.obj", "material": "m", "normals": "face" } ],
+    "environment": { "radiance": [0.5, 1, 2] }
+  } // there)");
+  CHECK(scene.width == 10);
+  CHECK(scene.height == 20);
+  CHECK(scene.environment == Vec3d{0.5, 1, 2});
+  REQUIRE(scene.materials.size() == 1);
+  const Material& material = scene.materials[0];
+  CHECK(material.type == MaterialType::conductor);
+  CHECK(material.alpha == 0.25);
+  CHECK(material.reflectance == Vec3d{1, 0.5, 0});
+  CHECK(material.ke == Vec3d{1, 2, 3});
+  CHECK(material.two_sided_emission);
+  std::string flags;
+  for (const RenderDefault& flag : scene.render_defaults) flags += flag.name + "=" + flag.value + " ";
+  CHECK(flags == "spp=16 jitter=off crop=0,1,2,3 rr=auto epsilon=1e-5 ");
+  CHECK(scene.render_defaults[1].place.line == 4);
+  CHECK(scene.render_defaults[1].place.column == 28);
+}
+
+TEST_CASE("a scene without light says so") {
+  const Scene scene = load_text(R"({ "meshes": [ { "obj": "t.obj" } ] })");
+  CHECK(scene.warnings ==
+        std::vector<std::string>{"nothing in the scene emits light: the image will be black"});
+  CHECK(load_text(R"({ "meshes": [ { "obj": "t.obj" } ], "environment": { "radiance": [1, 0, 0] } })")
+            .warnings.empty());
+}
+
+TEST_CASE("a camera is right-handed and orthonormal") {
+  const Camera camera = make_camera({1, 2, 3}, {4, -2, 9}, {0, 2, 1}, 90);
+  check_near(cross(camera.forward, camera.up), camera.right);
+  CHECK(length(camera.right) == Approx(1).epsilon(1e-15));
+  CHECK(dot(camera.up, camera.forward) == Approx(0).margin(1e-15));
+  CHECK(camera.tan_half_fov == Approx(1));
+  check_near(camera.direction(5, 5, 10, 10), camera.forward);
+  check_near(camera.direction(10, 5, 10, 10), camera.forward + camera.right);
+  // Also where squares would overflow or vanish.
+  check_near(make_camera({0, 0, 0}, {1e200, 0, 0}, {0, 1e-200, 0}, 40).up, {0, 1, 0});
+}
