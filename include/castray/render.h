@@ -70,6 +70,9 @@ struct RenderOptions {
 struct Progress {
   double fraction = 0;      ///< of the work, in [0,1]
   std::uint64_t paths = 0;  ///< finished camera samples
+  /// The sums so far, each row at the end of a pass, or null while rows are in work. Saved as a .film it can
+  /// be resumed; the result is that of an uninterrupted render, byte for byte.
+  const Film* film = nullptr;
 };
 /// Returns false to stop the render as soon as the rows in work are done.
 using ProgressCallback = std::function<bool(const Progress&)>;
@@ -102,7 +105,9 @@ struct RenderResult {
 };
 
 /// Renders. A pure function of its arguments: opens no file, prints nothing, never exits. Throws InputError
-/// if the options contradict the scene or one another.
-RenderResult render(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress = {});
+/// if the options contradict the scene or one another. `start`, if not null, is the film of an earlier run of
+/// the same render, stopped early or with fewer samples: only what it lacks is rendered.
+RenderResult render(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress = {},
+                    const Film* start = nullptr);
 
 }  // namespace castray

@@ -12,6 +12,7 @@ namespace castray::cli {
 using Run = std::function<int()>;
 
 // Each declares its flags on `app` and returns what runs it.
+Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_merge(CLI::App& app);

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <exception>
+#include <new>
 
 #include "castray/error.h"
 #include "cli/commands.h"
@@ -18,6 +20,7 @@ struct Subcommand {
 
 constexpr Subcommand subcommands[] = {
     // in the order of use: render, compare, bench, info, merge, convert
+    {"render", "render a scene to an image", add_render},
     {"compare", "measure how an image differs from its reference", add_compare},
     {"info", "what a scene holds, what it needs, warnings", add_info},
     {"merge", "add films of disjoint sample ranges", add_merge},
@@ -49,10 +52,15 @@ int run(int argc, char** argv) {
 }  // namespace castray::cli
 
 int main(int argc, char** argv) {
+  const auto fail = [](const char* message) {
+    fmt::print(stderr, "castray: error: {}\n", message);
+    return 2;
+  };
   try {
     return castray::cli::run(argc, argv);
-  } catch (const castray::InputError& error) {
-    fmt::print(stderr, "castray: error: {}\n", error.what());
-    return 2;
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; a smaller image or scene is needed");
+  } catch (const std::exception& error) {
+    return fail(error.what());
   }
 }

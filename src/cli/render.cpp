@@ -1,0 +1,160 @@
+#include <CLI/CLI.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+
+#include "castray/error.h"
+#include "castray/film.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/render_flags.h"
+#include "cli/render_report.h"
+#include "core/files.h"
+
+namespace castray::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// What the command line says, as text: values are read after the scene's own defaults.
+struct RenderCommand {
+  std::string scene;
+  std::vector<std::string> outputs;
+  std::vector<GivenFlag> given;
+  bool quiet = false, verbose = false;
+};
+
+void declare_flags(CLI::App& app, RenderCommand& command) {
+  app.add_option("scene", command.scene, "scene .json, or .obj")->type_name("SCENE")->required();
+  for (const RenderFlag& flag : render_flags()) {
+    const std::string name = std::string("--") + flag.name;
+    if (flag.metavar)
+      app.add_option_function<std::string>(
+             name,
+             [&command, &flag](const std::string& value) {
+               command.given.push_back({&flag, value});
+             },
+             flag.help)
+          ->type_name(flag.metavar)
+          ->group(flag.group)
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    else
+      app.add_flag_callback(
+             name,
+             [&command, &flag] {
+               command.given.push_back({&flag, "on"});
+             },
+             flag.help)
+          ->group(flag.group);
+  }
+  app.add_option("-o,--output", command.outputs,
+                 "image or film, repeatable; .ppm .png .pfm .hdr .exr .film [SCENE.png here]")
+      ->type_name("FILE")
+      ->group("Output")
+      ->allow_extra_args(false);
+  app.add_flag("-q", command.quiet, "say nothing but errors")->group("Output");
+  app.add_flag("-v", command.verbose, "say more")->group("Output");
+}
+
+RenderRequest request_of(const RenderCommand& command, const Scene& scene) {
+  RenderRequest request;
+  apply_defaults(request, scene);
+  for (const GivenFlag& given : command.given) given.flag->set(request, given.flag->name, given.value);
+  request.outputs.assign(command.outputs.begin(), command.outputs.end());
+  if (request.outputs.empty()) request.outputs.push_back(scene.name + ".png");
+  request.quiet = command.quiet;
+  request.verbose = command.verbose;
+  return request;
+}
+
+/// All that could spoil the result is found before the work starts.
+void check(const RenderRequest& request) {
+  if (request.resume && !request.checkpoint)
+    throw InputError("--resume: needs --checkpoint FILE to resume from");
+  for (const fs::path& output : request.outputs) check_output_image(output);
+  if (request.checkpoint && !is_film_format(*request.checkpoint))
+    throw InputError(request.checkpoint->string() + ": a checkpoint's name must end in .film");
+  if (request.checkpoint) check_output_image(*request.checkpoint);
+  if (request.stats) check_writable(*request.stats);
+}
+
+std::unique_ptr<Film> film_to_resume(const RenderRequest& request) {
+  if (!request.resume || !fs::exists(*request.checkpoint)) return nullptr;
+  return std::make_unique<Film>(read_film(*request.checkpoint));
+}
+
+/// Renders with progress, checkpoints and clean interruption.
+RenderResult render_watched(const Scene& scene, const RenderRequest& request) {
+  catch_interrupts();
+  const std::unique_ptr<Film> start = film_to_resume(request);
+  ProgressDisplay display(request.quiet ? ProgressMode::off : request.progress);
+  Clock::time_point saved = Clock::now();
+  RenderResult result = render(
+      scene, request.options,
+      [&](const Progress& progress) {
+        display.update(progress);
+        if (request.checkpoint && progress.film && seconds_since(saved) >= request.checkpoint_seconds) {
+          write_film(*request.checkpoint, *progress.film);
+          saved = Clock::now();
+        }
+        return !interrupted();
+      },
+      start.get());
+  display.finish();
+  return result;
+}
+
+void write_results(const RenderRequest& request, const RenderReport& report) {
+  const Film& film = report.result.film;
+  for (const fs::path& output : request.outputs) write_film(output, film, request.display, report.metadata());
+  if (request.checkpoint) write_film(*request.checkpoint, film);
+  if (request.stats) write_file(*request.stats, report.json());
+}
+
+int exit_code(Stopped stopped) {
+  if (stopped == Stopped::interrupted) return 130;
+  return stopped == Stopped::time_limit ? 1 : 0;
+}
+
+int render_scene(const RenderCommand& command) {
+  const Clock::time_point begin = Clock::now();
+  Scene scene = load_scene(command.scene);
+  RenderRequest request = request_of(command, scene);
+  check(request);
+  if (request.options.width > 0) scene.width = request.options.width, scene.height = request.options.height;
+  scene.camera = camera_of(request.camera, scene);
+  RenderReport report{scene, request.options, command.given};
+  report.load_seconds = seconds_since(begin);
+  if (!request.quiet) report.print_scene(request.verbose);
+
+  report.result = render_watched(scene, request);
+  report.total_seconds = seconds_since(begin);
+  write_results(request, report);
+  report.total_seconds = seconds_since(begin);
+  report.print_nonfinite();
+  if (!request.quiet) report.print_summary(request.outputs);
+  return exit_code(report.result.stats.stopped);
+}
+
+}  // namespace
+
+Run add_render(CLI::App& app) {
+  auto command = std::make_shared<RenderCommand>();
+  declare_flags(app, *command);
+  app.footer(
+      "Exit codes: 0 done; 1 stopped by --time-limit with samples missing; 2 error; 130 interrupted (what "
+      "was rendered "
+      "is saved).");
+  return [command] { return render_scene(*command); };
+}
+
+}  // namespace castray::cli

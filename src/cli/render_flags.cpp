@@ -1,0 +1,246 @@
+#include "cli/render_flags.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "castray/error.h"
+#include "cli/values.h"
+#include "core/nearest.h"
+#include "core/text.h"
+
+namespace castray::cli {
+
+namespace {
+
+using Text = const std::string&;
+using Request = RenderRequest&;
+
+constexpr std::uint64_t most_samples = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t most_whole = std::numeric_limits<std::uint64_t>::max();
+
+constexpr std::string_view switch_values[] = {"on", "off"};
+
+bool parse_on_off(Text flag, Text text) {
+  return parse_choice<bool>(flag, text, {{switch_values[0], true}, {switch_values[1], false}});
+}
+
+Switch parse_switch(Text flag, Text text) {
+  return parse_choice<Switch>(flag, text,
+                              {{"auto", Switch::automatic}, {"on", Switch::on}, {"off", Switch::off}});
+}
+
+std::optional<double> number_or_auto(Text flag, Text text) {
+  if (text == "auto") return std::nullopt;
+  return parse_number(flag, text);
+}
+
+[[noreturn]] void refuse(Text flag, Text text, const char* expected) {
+  throw InputError("--" + flag + " '" + printable(text) + "': must be " + expected);
+}
+
+int parse_side(Text flag, Text text) { return static_cast<int>(parse_whole(flag, text, 1, max_image_side)); }
+
+void set_size(Request r, Text flag, Text text) {
+  const auto sides = split(text, 'x');
+  if (sides.size() != 2) refuse(flag, text, "WIDTHxHEIGHT, as in 640x480");
+  r.options.width = parse_side(flag, sides[0]);
+  r.options.height = parse_side(flag, sides[1]);
+}
+
+void set_crop(Request r, Text flag, Text text) {
+  const auto edges = split(text, ',');
+  if (edges.size() != 4) refuse(flag, text, "X0,Y0,X1,Y1 in pixels");
+  const auto edge = [&](std::size_t i) {
+    return static_cast<int>(parse_whole(flag, edges[i], 0, max_image_side));
+  };
+  r.options.crop = Window{0, 0, edge(0), edge(1), edge(2), edge(3)};
+}
+
+void set_samples(Request r, Text flag, Text text) {
+  const auto parts = split(text, ':');
+  if (parts.size() != 2) refuse(flag, text, "FIRST:COUNT, as in 64:64");
+  r.options.samples = SampleRange{parse_whole(flag, parts[0], 0, most_whole - most_samples),
+                                  parse_whole(flag, parts[1], 1, most_samples)};
+}
+
+void set_reuse(Request r, Text flag, Text text) {
+  r.options.reuse = {.automatic = text == "auto"};
+  if (text == "auto" || text == "off") return;
+  const auto parts = split(text, ':');
+  const auto sides = split(parts[0], 'x');
+  if (parts.size() != 2 || sides.size() != 2)
+    refuse(flag, text, "auto, off or WIDTHxHEIGHT:SUFFIXES, as in 8x8:32");
+  constexpr std::uint64_t longest = 64;
+  const auto number = [&](Text part, std::uint64_t most) {
+    return static_cast<int>(parse_whole(flag, part, 1, most));
+  };
+  r.options.reuse.width = number(sides[0], longest);
+  r.options.reuse.height = number(sides[1], longest);
+  r.options.reuse.suffixes = number(parts[1], longest * longest);
+}
+
+constexpr const char* sampling = "Samples";
+constexpr const char* image = "Image";
+constexpr const char* estimator = "Estimator";
+constexpr const char* machine = "Machine";
+constexpr const char* stopping = "Stopping and resuming";
+constexpr const char* output = "Output";
+constexpr const char* view = "View (else the scene's; an .obj gets an automatic one)";
+
+const RenderFlag flags[] = {
+    {"spp", "N", "samples per pixel [scene's, else 64]", sampling,
+     [](Request r, Text f, Text t) { r.options.spp = parse_whole(f, t, 1, most_samples); }},
+    {"samples", "FIRST:COUNT", "render these sample indices only, for 'castray merge'", sampling, set_samples,
+     false},
+    {"seed", "N", "[0]", sampling,
+     [](Request r, Text f, Text t) { r.options.seed = parse_whole(f, t, 0, most_whole); }},
+    {"sampler", "sobol|independent", "[sobol]", sampling,
+     [](Request r, Text f, Text t) {
+       r.options.sampler = parse_choice<SamplerKind>(
+           f, t, {{"sobol", SamplerKind::sobol}, {"independent", SamplerKind::independent}});
+     }},
+    {"jitter", "on|off", "off: every sample through the pixel's centre [on]", sampling,
+     [](Request r, Text f, Text t) { r.options.jitter = parse_on_off(f, t); }},
+
+    {"size", "WxH", "image size in pixels [scene's]", image, set_size},
+    {"crop", "X0,Y0,X1,Y1", "the window x0 <= x < x1, y0 <= y < y1 only, as an image of its own size", image,
+     set_crop, false},
+    {"camera-position", "X,Y,Z", "where the camera is", view,
+     [](Request r, Text f, Text t) { r.camera.position = parse_vector(f, t); }, false},
+    {"look-at", "X,Y,Z", "where it looks [the scene's middle]", view,
+     [](Request r, Text f, Text t) { r.camera.look_at = parse_vector(f, t); }, false},
+    {"up", "X,Y,Z", "[0,1,0]", view, [](Request r, Text f, Text t) { r.camera.up = parse_vector(f, t); },
+     false},
+    {"fov", "DEGREES", "vertical field of view [40]", view,
+     [](Request r, Text f, Text t) { r.camera.fov = parse_number(f, t); }, false},
+
+    {"integrator", "wavefront|reference", "the fast one, or the recursive castRay [wavefront]", estimator,
+     [](Request r, Text f, Text t) {
+       r.options.integrator = parse_choice<Integrator>(
+           f, t, {{"wavefront", Integrator::wavefront}, {"reference", Integrator::reference}});
+     }},
+    {"precision", "float|double", "of the reference [float]", estimator,
+     [](Request r, Text f, Text t) {
+       r.options.precision =
+           parse_choice<Precision>(f, t, {{"float", Precision::float32}, {"double", Precision::float64}});
+     }},
+    {"rr", "auto|P", "Russian roulette: by throughput, or a fixed survival probability in (0,1] [auto]",
+     estimator, [](Request r, Text f, Text t) { r.options.rr = number_or_auto(f, t); }},
+    {"max-depth", "N|none", "most edges of a path: 1 emitters only, 2 direct light [none]", estimator,
+     [](Request r, Text f, Text t) {
+       r.options.max_depth =
+           t == "none" ? 0 : static_cast<int>(parse_whole(f, t, 1, std::numeric_limits<int>::max() / 2));
+     }},
+    {"epsilon", "auto|X", "rays start by per-hit error bounds, or by the classic absolute epsilon [auto]",
+     estimator, [](Request r, Text f, Text t) { r.options.epsilon = number_or_auto(f, t); }},
+    {"lights", "auto|area|solid-angle|tree", "how light points are chosen [auto]", estimator,
+     [](Request r, Text f, Text t) {
+       r.options.lights = parse_choice<LightSampling>(f, t,
+                                                      {{"auto", LightSampling::automatic},
+                                                       {"area", LightSampling::area},
+                                                       {"solid-angle", LightSampling::solid_angle},
+                                                       {"tree", LightSampling::tree}});
+     }},
+    {"mis", "on|off|auto", "multiple importance sampling of lights and BSDFs [auto]", estimator,
+     [](Request r, Text f, Text t) { r.options.mis = parse_switch(f, t); }},
+    {"reuse", "auto|off|WxH:N", "share N path suffixes in tiles of WxH pixels [auto]", estimator, set_reuse},
+    {"fault", "NAME", "show a classic fault (docs/classic-faults.md) on the reference", estimator,
+     [](Request r, Text f, Text t) {
+       r.options.fault = parse_choice<Fault>(f, t,
+                                             {{"none", Fault::none},
+                                              {"black-light", Fault::black_light},
+                                              {"vanishing-boxes", Fault::vanishing_boxes},
+                                              {"white-specks", Fault::white_specks},
+                                              {"slow-random", Fault::slow_random},
+                                              {"skewed-light", Fault::skewed_light},
+                                              {"no-light-choice", Fault::no_light_choice},
+                                              {"shared-counter", Fault::shared_counter}});
+     }},
+
+    {"threads", "N", "[the processors allowed to this process, cgroup limits read]", machine,
+     [](Request r, Text f, Text t) { r.options.threads = static_cast<int>(parse_whole(f, t, 1, 4096)); }},
+    {"isa", "auto|scalar|...", "instruction set of the kernels [auto]", machine,
+     [](Request r, Text, Text t) { r.options.isa = t; }},
+    {"accel", "auto|list|bvh", "how triangles are found [auto]", machine,
+     [](Request r, Text f, Text t) {
+       r.options.accel = parse_choice<AccelKind>(
+           f, t, {{"auto", AccelKind::automatic}, {"list", AccelKind::list}, {"bvh", AccelKind::bvh}});
+     }},
+    {"build", "auto|fast|best", "quality of the tree [auto]", machine,
+     [](Request r, Text f, Text t) {
+       r.options.build = parse_choice<BuildQuality>(
+           f, t,
+           {{"auto", BuildQuality::automatic}, {"fast", BuildQuality::fast}, {"best", BuildQuality::best}});
+     }},
+    {"generic", nullptr, "run the kernel that can do everything, whatever the scene needs", machine,
+     [](Request r, Text f, Text t) { r.options.generic = parse_on_off(f, t); }},
+
+    {"time-limit", "SECONDS", "stop rendering after this time; exit code 1 if samples are missing then",
+     stopping, [](Request r, Text f, Text t) { r.options.time_limit = parse_number(f, t); }},
+    {"target-error", "E", "stop at this relMSE", stopping,
+     [](Request r, Text f, Text t) { r.options.target_error = parse_number(f, t); }},
+    {"checkpoint", "FILE", "keep the sums so far in this .film", stopping,
+     [](Request r, Text, Text t) { r.checkpoint = t; }, false},
+    {"checkpoint-every", "SECONDS", "[60]", stopping,
+     [](Request r, Text f, Text t) {
+       r.checkpoint_seconds = parse_number(f, t);
+       if (!(r.checkpoint_seconds >= 0)) refuse(f, t, "a number of seconds");
+     }},
+    {"resume", nullptr, "go on from the checkpoint file, if it is there", stopping,
+     [](Request r, Text f, Text t) { r.resume = parse_on_off(f, t); }, false},
+
+    {"exposure", "STOPS", "of .ppm and .png [0]", output,
+     [](Request r, Text f, Text t) { r.display.exposure = parse_number(f, t); }},
+    {"tone", "srgb|linear|gamma:G", "curve of .ppm and .png; gamma:G is value^G [srgb]", output,
+     [](Request r, Text, Text t) { r.display.tone = parse_tone_curve(t); }},
+    {"progress", "auto|bar|lines|off", "on stderr [auto: a bar on a terminal, else lines]", output,
+     [](Request r, Text f, Text t) {
+       r.progress = parse_choice<ProgressMode>(f, t,
+                                               {{"auto", ProgressMode::automatic},
+                                                {"bar", ProgressMode::bar},
+                                                {"lines", ProgressMode::lines},
+                                                {"off", ProgressMode::off}});
+     }},
+    {"stats", "FILE", "write times and counts as JSON", output, [](Request r, Text, Text t) { r.stats = t; },
+     false},
+};
+
+}  // namespace
+
+std::span<const RenderFlag> render_flags() { return flags; }
+
+void apply_defaults(RenderRequest& request, const Scene& scene) {
+  for (const RenderDefault& given : scene.render_defaults) {
+    const RenderFlag* found = nullptr;
+    std::vector<std::string_view> names;
+    for (const RenderFlag& flag : flags) {
+      if (!flag.in_scene) continue;
+      names.push_back(flag.name);
+      if (given.name == flag.name) found = &flag;
+    }
+    if (!found)
+      throw InputError(given.place, "unknown key '" + printable(given.name) + "' in \"render\"" +
+                                        suggestion(given.name, names));
+    try {
+      found->set(request, given.name, given.value);
+    } catch (const InputError& error) {
+      throw InputError(given.place, error.what());
+    }
+  }
+}
+
+Camera camera_of(const CameraFlags& given, Scene& scene) {
+  if (!given.position && !given.look_at && !given.up && !given.fov)
+    return scene.file.extension() == ".obj" ? automatic_camera(scene) : scene.camera;
+  const Camera& own = scene.camera;
+  const Vec3d position = given.position ? scene.to_scene(*given.position) : own.position;
+  const Vec3d look_at = given.look_at    ? scene.to_scene(*given.look_at)
+                        : given.position ? Vec3d()  // the middle of the scene
+                                         : own.position + own.forward;
+  const double own_fov = std::atan(own.tan_half_fov) * 360 / std::numbers::pi;
+  return make_camera(position, look_at, given.up.value_or(given.position ? Vec3d(0, 1, 0) : own.up),
+                     given.fov.value_or(own_fov));
+}
+
+}  // namespace castray::cli

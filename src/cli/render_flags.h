@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "castray/image.h"
+#include "castray/render.h"
+#include "castray/scene.h"
+
+namespace castray::cli {
+
+enum class ProgressMode : unsigned char { automatic, bar, lines, off };
+
+/// A view given by flags; what is missing is the scene's.
+struct CameraFlags {
+  std::optional<Vec3d> position, look_at, up;
+  std::optional<double> fov;
+};
+
+/// Everything that the flags of `castray render` say.
+struct RenderRequest {
+  RenderOptions options;
+  CameraFlags camera;
+  Display display;
+  std::vector<std::filesystem::path> outputs;
+  std::optional<std::filesystem::path> checkpoint, stats;
+  double checkpoint_seconds = 60;
+  bool resume = false, quiet = false, verbose = false;
+  ProgressMode progress = ProgressMode::automatic;
+};
+
+/// One flag of `castray render`: its line in the help and what it does to a request.
+struct RenderFlag {
+  const char* name;     ///< without dashes
+  const char* metavar;  ///< null for a switch, which is set with the value "on"
+  const char* help;
+  const char* group;
+  void (*set)(RenderRequest& request, const std::string& flag, const std::string& value);
+  bool in_scene = true;  ///< may stand in a scene file's "render" section
+};
+
+std::span<const RenderFlag> render_flags();
+
+/// Sets what a scene's "render" section says. Throws InputError with its place.
+void apply_defaults(RenderRequest& request, const Scene& scene);
+
+/// The scene's camera, or the one that the flags describe. `image_width` and `image_height` are final.
+Camera camera_of(const CameraFlags& flags, Scene& scene);
+
+}  // namespace castray::cli

@@ -1,0 +1,153 @@
+#include "cli/render_report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace castray::cli {
+
+namespace {
+
+const char* name_of(Stopped stopped) {
+  switch (stopped) {
+    case Stopped::time_limit:
+      return "time-limit";
+    case Stopped::target_error:
+      return "target-error";
+    case Stopped::interrupted:
+      return "interrupted";
+    case Stopped::done:
+      break;
+  }
+  return "done";
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+double millions_per_second(std::uint64_t count, double seconds) {
+  return seconds > 0 ? static_cast<double>(count) * 1e-6 / seconds : 0;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// `text` as one word of a shell command.
+std::string shell_word(const std::string& text) {
+  const bool plain = !text.empty() && text.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-./:,=+") == std::string::npos;
+  if (plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+void RenderReport::print_scene(bool verbose) const {
+  for (const std::string& warning : scene.warnings)
+    fmt::print(stderr, "castray: warning: {}: {}\n", scene.file.string(), warning);
+  if (!verbose) return;
+  fmt::print(stderr, "castray: {}: {} triangles, {} of them lights, {} materials; read in {:.3f} s\n",
+             scene.file.string(), scene.triangles.size(), scene.lights.size(), scene.materials.size(),
+             load_seconds);
+  for (const std::string& key : scene.ignored_keys) fmt::print(stderr, "castray: ignored: {}\n", key);
+}
+
+void RenderReport::print_nonfinite() const {
+  const RenderStats& stats = result.stats;
+  if (stats.nonfinite.empty()) return;
+  fmt::print(stderr,
+             "castray: warning: {} samples were not finite and were left out; the first, and how to see each "
+             "again:\n",
+             result.film.nonfinite_samples);
+  for (const NonfiniteSample& sample : stats.nonfinite)
+    fmt::print(stderr, "  pixel ({},{}), sample {}: {}\n", sample.x, sample.y, sample.sample, replay(sample));
+}
+
+void RenderReport::print_summary(const std::vector<std::filesystem::path>& outputs) const {
+  const RenderStats& s = result.stats;
+  const Film& film = result.film;
+  if (s.accel_summary.starts_with("BVH"))
+    fmt::print(stderr, "BVH generation complete: {}\n", s.accel_summary);
+  fmt::print(stderr, "{}: {} triangles, {} x {} pixels, {} spp; {}{}; {} threads\n", scene.name,
+             scene.triangles.size(), film.width(), film.height(), spp(), s.kernel,
+             s.isa == "none" ? "" : " (" + s.isa + ")", s.threads);
+  if (!s.skipped.empty()) fmt::print(stderr, "skipped: {}\n", joined(s.skipped));
+  fmt::print(
+      stderr,
+      "{:.3f} s for the BVH, {:.3f} s to render, {:.2f} Msamples/s, {:.2f} Mrays/s, {:.1f} MiB at most\n",
+      s.bvh_seconds, s.render_seconds, millions_per_second(s.paths, s.render_seconds),
+      millions_per_second(s.rays, s.render_seconds), static_cast<double>(peak_memory_bytes()) / (1 << 20));
+  for (const auto& output : outputs) fmt::print(stderr, "wrote {}\n", output.string());
+  if (s.stopped == Stopped::done)
+    fmt::print(stderr, "Render complete\n");
+  else
+    fmt::print(stderr, "Render stopped early: {}; what was rendered is saved\n", name_of(s.stopped));
+}
+
+std::string RenderReport::json() const {
+  const RenderStats& s = result.stats;
+  const nlohmann::ordered_json object = {
+      {"version", CASTRAY_VERSION},
+      {"scene", scene.file.string()},
+      {"width", result.film.width()},
+      {"height", result.film.height()},
+      {"spp", spp()},
+      {"seed", options.seed},
+      {"threads", s.threads},
+      {"isa", s.isa},
+      {"kernel", s.kernel},
+      {"skipped", s.skipped},
+      {"accel", s.accel_summary},
+      {"triangles", scene.triangles.size()},
+      {"lights", scene.lights.size()},
+      {"load_seconds", load_seconds},
+      {"bvh_seconds", s.bvh_seconds},
+      {"render_seconds", s.render_seconds},
+      {"total_seconds", total_seconds},
+      {"paths", s.paths},
+      {"rays", s.rays},
+      {"mpaths_per_second", millions_per_second(s.paths, s.render_seconds)},
+      {"mrays_per_second", millions_per_second(s.rays, s.render_seconds)},
+      {"peak_memory_bytes", peak_memory_bytes()},
+      {"nonfinite_samples", result.film.nonfinite_samples},
+      {"stopped", name_of(s.stopped)}};
+  return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Metadata RenderReport::metadata() const {
+  return {{"Software", "castray " CASTRAY_VERSION},
+          {"castray:version", CASTRAY_VERSION},
+          {"castray:scene", scene.name},
+          {"castray:options", result.film.key},
+          {"castray:spp", std::to_string(spp())},
+          {"castray:seed", std::to_string(options.seed)},
+          {"castray:seconds", fmt::format("{:.3f}", result.stats.render_seconds)}};
+}
+
+std::uint64_t RenderReport::spp() const { return options.samples ? options.samples->count : options.spp; }
+
+std::string RenderReport::replay(const NonfiniteSample& sample) const {
+  static const std::set<std::string> not_repeated = {
+      "spp",   "samples",          "crop",   "threads",    "checkpoint",
+      "stats", "checkpoint-every", "resume", "time-limit", "progress"};
+  std::string command = "castray render " + shell_word(scene.file.string());
+  for (const GivenFlag& g : given) {
+    if (not_repeated.contains(g.flag->name)) continue;
+    command += std::string(" --") + g.flag->name;
+    if (g.flag->metavar) command += " " + shell_word(g.value);
+  }
+  return command + fmt::format(" --crop {},{},{},{} --samples {}:1 -o sample.pfm", sample.x, sample.y,
+                               sample.x + 1, sample.y + 1, sample.sample);
+}
+
+}  // namespace castray::cli

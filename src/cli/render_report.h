@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "castray/image.h"
+#include "castray/render.h"
+#include "cli/render_flags.h"
+
+namespace castray::cli {
+
+/// A flag as given on the command line.
+struct GivenFlag {
+  const RenderFlag* flag;
+  std::string value;
+};
+
+/// What is told about a render, to people (on stderr) and to programs.
+struct RenderReport {
+  const Scene& scene;
+  const RenderOptions& options;
+  const std::vector<GivenFlag>& given;
+  double load_seconds = 0, total_seconds = 0;
+  RenderResult result{};
+
+  void print_scene(bool verbose) const;
+  void print_nonfinite() const;
+  void print_summary(const std::vector<std::filesystem::path>& outputs) const;
+
+  /// The contents of a --stats file.
+  std::string json() const;
+  /// What is stored in PNG and EXR files.
+  Metadata metadata() const;
+
+ private:
+  std::uint64_t spp() const;
+  /// The command that renders one sample again, alone.
+  std::string replay(const NonfiniteSample& sample) const;
+};
+
+}  // namespace castray::cli

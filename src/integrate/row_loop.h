@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "castray/render.h"
+
+namespace castray {
+
+/// What rendering some rows hands back besides the film's sums.
+struct RowStats {
+  std::uint64_t rays = 0;
+  std::vector<NonfiniteSample> nonfinite;  ///< samples dropped
+};
+
+/// Adds the samples of rows y0 <= y < y1 of the full image to the film. Called by several threads at a time,
+/// for different rows.
+using RenderRows =
+    std::function<void(int y0, int y1, const SampleRange& samples, Film& film, RowStats& stats)>;
+
+/// The loop around every integrator: passes over the image, each for some of the samples; in a pass OpenMP
+/// hands out bands of `band_height` rows dynamically, and nothing is shared but the band counter. Tells
+/// `progress`, stops at its wish or at the time limit, and fills in all of the stats that it knows.
+///
+/// As film sums are exact, the passes do not show in the result. They make an early stop leave a whole image
+/// and a checkpoint possible: between passes no row is in work. `start`, if not null, is the film of an
+/// earlier run of the same render, whose samples are not rendered again.
+RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
+                      const Film* start, int band_height, const RenderRows& render_rows);
+
+/// The window that is rendered: the crop, or all of the image.
+Window window_of(const Scene& scene, const RenderOptions& options);
+
+/// How many threads render: as asked, or all that this process may use.
+int thread_count(const RenderOptions& options);
+
+/// The sample indices that are rendered.
+SampleRange samples_of(const RenderOptions& options);
+
+}  // namespace castray
