@@ -37,7 +37,7 @@ struct Float {
   RawFloat v;
   Float() = default;
   CASTRAY_INLINE Float(RawFloat raw) : v(raw) {}
-  CASTRAY_INLINE Float(float s) : v(RawFloat{} + s) {}
+  CASTRAY_INLINE Float(float s) : v(s - RawFloat{}) {}  // 0 + s would cost an addition: it is not -0 for -0
 };
 
 /// `width` unsigned 32-bit integers.

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "accel/aligned_array.h"
+#include "accel/bvh_node.h"
+#include "accel/ray.h"
+#include "kernels/wide_bvh_view.h"
+
+namespace castray {
+
+struct WideTree {
+  AlignedArray<WideNode> nodes;
+  AlignedArray<TrianglePacket> packets;
+  std::uint32_t root = 0;
+  int depth = 0;
+};
+
+/// Makes nodes of eight children out of a binary tree, by opening the largest child again and again, and packets out of
+/// its leaves. Leaves must hold at most packet_size * max_leaf_packets triangles.
+WideTree collapse(const BinaryTree& tree, const MeshView& mesh, int threads);
+
+}  // namespace castray

@@ -1,0 +1,41 @@
+#include "accel/wide_bvh.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "accel/bvh_build.h"
+#include "accel/collapse.h"
+
+namespace castray {
+
+WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality) {
+  const auto start = std::chrono::steady_clock::now();
+  WideBvh bvh;
+  if (mesh.count > 0) {
+    float traversal_cost = 0.5f;
+    if (const char* e = getenv("TC")) traversal_cost = strtof(e, nullptr);
+    uint32_t ml = packet_size;
+    if (const char* e = getenv("ML")) ml = atoi(e);
+    const BinaryTree tree =
+        build_binary_tree(mesh, {.threads = threads, .max_leaf = ml, .leaf_block_log2 = getenv("BL") ? atoi(getenv("BL")) : 3, .traversal_cost = traversal_cost});
+    WideTree wide = collapse(tree, mesh, threads);
+    bvh.nodes_ = std::move(wide.nodes);
+    bvh.packets_ = std::move(wide.packets);
+    bvh.view_.root = wide.root;
+    bvh.view_.depth = wide.depth;
+    std::copy_n(tree.root.lower, 3, bvh.view_.lower);
+    std::copy_n(tree.root.upper, 3, bvh.view_.upper);
+    bvh.stats_.sah_cost = tree.sah_cost;
+    bvh.stats_.depth = wide.depth;
+  }
+  bvh.view_.nodes = bvh.nodes_.data();
+  bvh.view_.packets = bvh.packets_.data();
+  bvh.view_.triangles = mesh.count;
+  bvh.stats_.triangles = mesh.count;
+  bvh.stats_.nodes = static_cast<std::uint32_t>(bvh.nodes_.size());
+  bvh.stats_.bytes = bvh.nodes_.bytes() + bvh.packets_.bytes();
+  bvh.stats_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return bvh;
+}
+
+}  // namespace castray

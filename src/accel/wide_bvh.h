@@ -1,0 +1,28 @@
+#pragma once
+
+#include "accel/aligned_array.h"
+#include "accel/bvh.h"
+#include "castray/render.h"
+#include "kernels/wide_bvh_view.h"
+
+namespace castray {
+
+/// A bounding volume hierarchy with eight children a node and packets of eight triangles, for the kernels. Holds the
+/// triangles' vertices itself: the mesh is not needed any more. Gives the answers of TriangleList, bit for bit.
+class WideBvh {
+ public:
+  /// The hierarchy does not depend on `threads`.
+  static WideBvh build(const MeshView& mesh, int threads, BuildQuality quality = BuildQuality::fast);
+
+  /// Valid as long as this lives.
+  WideBvhView view() const { return view_; }
+  const BvhStats& stats() const { return stats_; }
+
+ private:
+  AlignedArray<WideNode> nodes_;
+  AlignedArray<TrianglePacket> packets_;
+  WideBvhView view_{};
+  BvhStats stats_;
+};
+
+}  // namespace castray
