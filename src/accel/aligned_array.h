@@ -5,8 +5,8 @@
 
 namespace castray {
 
-/// A fixed number of default-initialised (so, for plain data, unwritten) elements: large arrays are first touched by
-/// the threads that fill them.
+/// A fixed number of default-initialised (so, for plain data, unwritten) elements: large arrays are first
+/// touched by the threads that fill them.
 template <class T>
 class AlignedArray {
  public:

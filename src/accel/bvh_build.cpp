@@ -58,7 +58,7 @@ class Builder {
     BinaryTree tree;
     tree.primitives.resize(mesh_.count);
     primitives_ = tree.primitives.data();
-#pragma omp parallel num_threads(parameters_.threads)
+#pragma omp parallel num_threads(parameters_.threads) if (mesh_.count > subtree_size)
 #pragma omp single
     {
       Subtree top;

@@ -8,7 +8,8 @@ namespace castray {
 namespace {
 
 float half_area(const BvhNode& node) {
-  const float x = node.upper[0] - node.lower[0], y = node.upper[1] - node.lower[1], z = node.upper[2] - node.lower[2];
+  const float x = node.upper[0] - node.lower[0], y = node.upper[1] - node.lower[1],
+              z = node.upper[2] - node.lower[2];
   return x * y + y * z + z * x;
 }
 
@@ -49,9 +50,9 @@ class Treelet {
  private:
   struct Item {
     const BvhNode* node;
-    int first;             ///< of its two items here; 0: not opened
+    int first;  ///< of its two items here; 0: not opened
     int slot = 0;
-    std::uint32_t axis = 0;       ///< along which they lie apart
+    std::uint32_t axis = 0;  ///< along which they lie apart
     bool first_is_lower = true;
   };
 
@@ -119,8 +120,9 @@ class Collapser {
   WideTree run(int threads) {
     const Extent all = plan(tree_.root, 0);
     const auto count = static_cast<std::int64_t>(jobs_.size());
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (std::int64_t i = 0; i < count; ++i) jobs_[static_cast<std::size_t>(i)].extent = measure(*jobs_[static_cast<std::size_t>(i)].root);
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (count > 1)
+    for (std::int64_t i = 0; i < count; ++i)
+      jobs_[static_cast<std::size_t>(i)].extent = measure(*jobs_[static_cast<std::size_t>(i)].root);
     Extent total = all;
     for (Job& job : jobs_) {
       job.node = total.nodes;
@@ -137,7 +139,7 @@ class Collapser {
     std::uint32_t node = 0, packet = 0;
     std::size_t job = 0;
     wide.root = make(tree_.root, node, packet, 0, &job);
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
+#pragma omp parallel for schedule(dynamic) num_threads(threads) if (count > 1)
     for (std::int64_t i = 0; i < count; ++i) {
       Job& j = jobs_[static_cast<std::size_t>(i)];
       *j.child = make(*j.root, j.node, j.packet, 0, nullptr);
@@ -169,9 +171,10 @@ class Collapser {
     return extent;
   }
 
-  /// Writes the subtree from `node` and `packet` on, which it moves past what it wrote. With `job`, leaves the subtrees
-  /// of jobs out.
-  std::uint32_t make(const BvhNode& binary, std::uint32_t& node, std::uint32_t& packet, int level, std::size_t* job) {
+  /// Writes the subtree from `node` and `packet` on, which it moves past what it wrote. With `job`, leaves
+  /// the subtrees of jobs out.
+  std::uint32_t make(const BvhNode& binary, std::uint32_t& node, std::uint32_t& packet, int level,
+                     std::size_t* job) {
     if (binary.is_leaf()) return make_leaf(binary, packet);
     const Treelet treelet(binary, tree_);
     const std::uint32_t index = node++;

@@ -14,8 +14,8 @@ struct WideTree {
   int depth = 0;
 };
 
-/// Makes nodes of eight children out of a binary tree, by opening the largest child again and again, and packets out of
-/// its leaves. Leaves must hold at most packet_size * max_leaf_packets triangles.
+/// Makes nodes of eight children out of a binary tree, by opening the largest child again and again, and
+/// packets out of its leaves. Leaves must hold at most packet_size * max_leaf_packets triangles.
 WideTree collapse(const BinaryTree& tree, const MeshView& mesh, int threads);
 
 }  // namespace castray

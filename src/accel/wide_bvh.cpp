@@ -12,12 +12,9 @@ WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality) {
   const auto start = std::chrono::steady_clock::now();
   WideBvh bvh;
   if (mesh.count > 0) {
-    float traversal_cost = 0.5f;
-    if (const char* e = getenv("TC")) traversal_cost = strtof(e, nullptr);
-    uint32_t ml = packet_size;
-    if (const char* e = getenv("ML")) ml = atoi(e);
-    const BinaryTree tree =
-        build_binary_tree(mesh, {.threads = threads, .max_leaf = ml, .leaf_block_log2 = getenv("BL") ? atoi(getenv("BL")) : 3, .traversal_cost = traversal_cost});
+    const BuildParameters parameters{
+        .threads = threads, .max_leaf = packet_size, .leaf_block_log2 = 3, .traversal_cost = 0.5f};
+    const BinaryTree tree = build_binary_tree(mesh, parameters);
     WideTree wide = collapse(tree, mesh, threads);
     bvh.nodes_ = std::move(wide.nodes);
     bvh.packets_ = std::move(wide.packets);

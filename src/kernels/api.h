@@ -2,6 +2,8 @@
 
 #include <stdint.h>
 
+#include "kernels/wide_bvh_view.h"
+
 // What the program and the kernels exchange: plain data and a table of functions, the same for every
 // instruction set. Everything is in scene space.
 
@@ -129,6 +131,8 @@ struct KernelApi {
   uint64_t scratch_bytes;
   /// `scratch`: scratch_bytes, aligned to 64, of the calling thread.
   void (*render_tiles)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+  void (*bvh_closest)(const WideBvhView&, const RayBatch&);      ///< the nearest hit of every ray
+  void (*bvh_occluded)(const WideBvhView&, const ShadowBatch&);  ///< whether each ray hits anything
 };
 
 namespace scalar {

@@ -21,12 +21,14 @@ Float load_padded(const float* from, uint32_t i, uint32_t count) {
 }
 
 template <bool any, class Batch>
-CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t first, uint32_t count, RayGroup& group,
-                          float* stack_t, uint32_t* stack_child, const Hits& hits) {
+CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t first, uint32_t count,
+                          RayGroup& group, float* stack_t, uint32_t* stack_child, const Hits& hits) {
   const uint32_t last = first + count;
   for (uint32_t i = first; i < last; i += width) {
-    const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last), load_padded(rays.oz, i, last)};
-    const Float d[3] = {load_padded(rays.dx, i, last), load_padded(rays.dy, i, last), load_padded(rays.dz, i, last)};
+    const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last),
+                        load_padded(rays.oz, i, last)};
+    const Float d[3] = {load_padded(rays.dx, i, last), load_padded(rays.dy, i, last),
+                        load_padded(rays.dz, i, last)};
     prepare(group, i - first, bvh, o, d, load_padded(rays.t_max, i, last));
   }
   for (uint32_t i = 0; i < count; ++i) {

@@ -5,29 +5,34 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// What a ray has yet to visit: entry distances and children, the nearest last. Seven siblings a level, and room for
-/// eight that a push writes whole.
+/// What a ray has yet to visit: entry distances and children, the nearest last. Seven siblings a level, and
+/// room for eight that a push writes whole.
 struct Stack {
   float* t;
   uint32_t* child;
 };
 
-CASTRAY_INLINE F8 plane8(const WideNode& node, uint32_t offset) { return *(const F8*)((const char*)&node + offset); }
+CASTRAY_INLINE F8 plane8(const WideNode& node, uint32_t offset) {
+  return *(const F8*)((const char*)&node + offset);
+}
 CASTRAY_INLINE F8 vertex8(const TrianglePacket& packet, uint32_t vertex, uint32_t axis) {
   return *(const F8*)((const char*)packet.vertex[vertex] + axis);
 }
 
 /// Puts the children that the ray enters on the stack, from `size` on; returns how many.
-CASTRAY_INLINE uint32_t enter_node(const WideNode& node, const RayGroup& group, uint32_t r, const Stack& stack, uint32_t size) {
+CASTRAY_INLINE uint32_t enter_node(const WideNode& node, const RayGroup& group, uint32_t r,
+                                   const Stack& stack, uint32_t size) {
   const F8 zero{};
   F8 near = zero, far = splat8(group.nearest[r]);
   for (int i = 0; i < 3; ++i) {
     const uint32_t plane = group.near_plane[i][r];
-    near = max8(near, about_mul_sub8(plane8(node, plane), splat8(group.near_inverse[i][r]), splat8(group.near_offset[i][r])));
+    near = max8(near, about_mul_sub8(plane8(node, plane), splat8(group.near_inverse[i][r]),
+                                     splat8(group.near_offset[i][r])));
     far = min8(far, about_mul_sub8(plane8(node, plane ^ far_plane_flip[i]), splat8(group.far_inverse[i][r]),
                                    splat8(group.far_offset[i][r])));
   }
-  return push_in_order(near, far, node.child, node.order[group.octant[r]], stack.t + size, stack.child + size);
+  return push_in_order(near, far, node.child, node.order[group.octant[r]], stack.t + size,
+                       stack.child + size);
 }
 
 /// Where one of the three is negative and another positive.
@@ -42,10 +47,13 @@ CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, RayGroup& gro
   F8 x[3], y[3], z[3];
   for (uint32_t v = 0; v < 3; ++v) {
     z[v] = vertex8(packet, v, group.axis[2][r]) - splat8(group.origin[2][r]);
-    x[v] = (vertex8(packet, v, group.axis[0][r]) - splat8(group.origin[0][r])) - splat8(group.shear_x[r]) * z[v];
-    y[v] = (vertex8(packet, v, group.axis[1][r]) - splat8(group.origin[1][r])) - splat8(group.shear_y[r]) * z[v];
+    x[v] =
+        (vertex8(packet, v, group.axis[0][r]) - splat8(group.origin[0][r])) - splat8(group.shear_x[r]) * z[v];
+    y[v] =
+        (vertex8(packet, v, group.axis[1][r]) - splat8(group.origin[1][r])) - splat8(group.shear_y[r]) * z[v];
   }
-  const F8 plain_u = x[2] * y[1] - y[2] * x[1], plain_v = x[0] * y[2] - y[0] * x[2], plain_w = x[1] * y[0] - y[1] * x[0];
+  const F8 plain_u = x[2] * y[1] - y[2] * x[1], plain_v = x[0] * y[2] - y[0] * x[2],
+           plain_w = x[1] * y[0] - y[1] * x[0];
   const uint32_t candidates = 0xff ^ mixed_signs8(plain_u, plain_v, plain_w);
   if (!candidates) return false;
 
@@ -54,7 +62,8 @@ CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, RayGroup& gro
   const F8 w = difference_of_products8(x[1], y[0], y[1], x[0], candidates);
   const F8 det = u + v + w;
   const F8 t = (u * z[0] + v * z[1] + w * z[2]) / (det * splat8(group.direction_z[r]));
-  const uint32_t ahead = both_less8<true>(t, splat8(group.nearest[r]), splat8(__FLT_DENORM_MIN__), t);  // not if det is 0
+  const uint32_t ahead =
+      both_less8<true>(t, splat8(group.nearest[r]), splat8(__FLT_DENORM_MIN__), t);  // not if det is 0
   bool found = false;
   for (uint32_t hits = candidates & ahead & ~mixed_signs8(u, v, w); hits; hits &= hits - 1) {
     const int l = __builtin_ctz(hits);
@@ -76,11 +85,11 @@ CASTRAY_INLINE uint32_t drop_farther(const Stack& stack, uint32_t size, float ne
   return kept;
 }
 
-/// Traces the rays of a group, several at a time and each a node or a leaf in turn: while one waits for memory the others
-/// work, and what is done next branches the same way for all.
+/// Traces the rays of a group, several at a time and each a node or a leaf in turn: while one waits for
+/// memory the others work, and what is done next branches the same way for all.
 template <bool any, class Output>
-CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_t count, float* stack_t, uint32_t* stack_child,
-                                const Output& out) {
+CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_t count, float* stack_t,
+                                uint32_t* stack_child, const Output& out) {
   constexpr uint32_t slots = 32;
   const uint32_t room = 7u * (uint32_t)bvh.depth + 9;
   uint32_t ray[slots], size[slots], child[slots];
@@ -90,7 +99,8 @@ CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_
   const auto queue = [&](uint32_t s, uint32_t c) {
     child[s] = c;
     const bool is_leaf = c & leaf_flag;
-    const char* const address = is_leaf ? (const char*)(bvh.packets + (c & ~leaf_flag) / max_leaf_packets) : (const char*)(bvh.nodes + c);
+    const char* const address = is_leaf ? (const char*)(bvh.packets + (c & ~leaf_flag) / max_leaf_packets)
+                                        : (const char*)(bvh.nodes + c);
     for (int line = 0; line < 5; ++line) __builtin_prefetch(address + 64 * line);
     nodes[node_count] = (uint8_t)s;
     leaves[leaf_count] = (uint8_t)s;

@@ -5,8 +5,9 @@
 
 #include "kernels/isa.h"
 
-// Eight floats side by side on every instruction set, for the eight boxes of a node and the eight triangles of a packet
-// (lanes.h has as many lanes as the set's registers). Compiler vectors, which are split where registers are shorter.
+// Eight floats side by side on every instruction set, for the eight boxes of a node and the eight triangles
+// of a packet (lanes.h has as many lanes as the set's registers). Compiler vectors, which are split where
+// registers are shorter.
 
 // Everything here is inlined: that such vectors are passed differently with and without AVX does not matter.
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -18,7 +19,9 @@ using I8 = int32_t __attribute__((vector_size(32)));
 using U8 = uint32_t __attribute__((vector_size(32)));
 
 CASTRAY_INLINE F8 load8(const float* p) { return *(const F8*)p; }
-CASTRAY_INLINE F8 splat8(float s) { return s - F8{}; }  // 0 + s would have to be computed, as it is not -0 for -0
+CASTRAY_INLINE F8 splat8(float s) {
+  return s - F8{};
+}  // 0 + s would have to be computed, as it is not -0 for -0
 
 /// Of two NaN or equal operands the second, as the instructions do.
 CASTRAY_INLINE F8 min8(F8 a, F8 b) {
@@ -50,7 +53,8 @@ template <bool or_equal>
 CASTRAY_INLINE uint32_t both_less8(F8 a, F8 b, F8 c, F8 d) {
 #if defined(__AVX512VL__)
   constexpr int compare = or_equal ? _CMP_LE_OQ : _CMP_LT_OQ;
-  return _mm256_mask_cmp_ps_mask(_mm256_cmp_ps_mask((__m256)a, (__m256)b, compare), (__m256)c, (__m256)d, compare);
+  return _mm256_mask_cmp_ps_mask(_mm256_cmp_ps_mask((__m256)a, (__m256)b, compare), (__m256)c, (__m256)d,
+                                 compare);
 #else
   const I8 both = or_equal ? (a <= b) & (c <= d) : (a < b) & (c < d);
 #ifdef __AVX2__
@@ -63,8 +67,9 @@ CASTRAY_INLINE uint32_t both_less8(F8 a, F8 b, F8 c, F8 d) {
 #endif
 }
 
-/// a * b - c * d in each lane to two ulps and of the exact sign; see difference_of_products in accel/triangle.h, with which
-/// it agrees to the bit. Without fused multiply-add only the lanes in `lanes` are computed.
+/// a * b - c * d in each lane to two ulps and of the exact sign; see difference_of_products in
+/// accel/triangle.h, with which it agrees to the bit. Without fused multiply-add only the lanes in `lanes`
+/// are computed.
 CASTRAY_INLINE F8 difference_of_products8(F8 a, F8 b, F8 c, F8 d, [[maybe_unused]] uint32_t lanes) {
 #ifdef __FMA__
   const __m256 cd = _mm256_mul_ps((__m256)c, (__m256)d);
@@ -90,7 +95,8 @@ CASTRAY_INLINE __m256i packing8(uint32_t mask) {
 }
 
 /// Stores the lanes set in `mask`, one after the other, and rubbish after them; returns how many.
-CASTRAY_INLINE uint32_t store_packed8(__m256 t, __m256i child, uint32_t mask, float* out_t, uint32_t* out_child) {
+CASTRAY_INLINE uint32_t store_packed8(__m256 t, __m256i child, uint32_t mask, float* out_t,
+                                      uint32_t* out_child) {
 #ifdef __AVX512VL__
   _mm256_storeu_ps(out_t, _mm256_maskz_compress_ps((__mmask8)mask, t));
   _mm256_storeu_si256((__m256i*)out_child, _mm256_maskz_compress_epi32((__mmask8)mask, child));
@@ -103,13 +109,15 @@ CASTRAY_INLINE uint32_t store_packed8(__m256 t, __m256i child, uint32_t mask, fl
 }
 #endif
 
-/// Stores near and child of the lanes in which near <= far, in the order of `order` (four bits a lane, the first lowest);
-/// returns how many. Writes eight of each.
+/// Stores near and child of the lanes in which near <= far, in the order of `order` (four bits a lane, the
+/// first lowest); returns how many. Writes eight of each.
 CASTRAY_INLINE uint32_t push_in_order(F8 near, F8 far, const uint32_t* child, uint32_t order, float* out_near,
                                       uint32_t* out_child) {
 #ifdef __AVX2__
-  const __m256i lanes = _mm256_srlv_epi32(_mm256_set1_epi32((int)order), _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28));
-  const __m256 n = _mm256_permutevar8x32_ps((__m256)near, lanes), f = _mm256_permutevar8x32_ps((__m256)far, lanes);
+  const __m256i lanes =
+      _mm256_srlv_epi32(_mm256_set1_epi32((int)order), _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28));
+  const __m256 n = _mm256_permutevar8x32_ps((__m256)near, lanes),
+               f = _mm256_permutevar8x32_ps((__m256)far, lanes);
   const __m256i c = _mm256_permutevar8x32_epi32(*(const __m256i*)child, lanes);
 #ifdef __AVX512VL__
   const uint32_t mask = _mm256_cmp_ps_mask(n, f, _CMP_LE_OQ);
@@ -130,9 +138,10 @@ CASTRAY_INLINE uint32_t push_in_order(F8 near, F8 far, const uint32_t* child, ui
 #endif
 }
 
-/// Of the `count` pairs from `t[from]` and `child[from]` on, at most eight, moves those with t <= limit to `to` and on;
-/// returns how many.
-CASTRAY_INLINE uint32_t pack8(float* t, uint32_t* child, uint32_t from, uint32_t count, float limit, uint32_t to) {
+/// Of the `count` pairs from `t[from]` and `child[from]` on, at most eight, moves those with t <= limit to
+/// `to` and on; returns how many.
+CASTRAY_INLINE uint32_t pack8(float* t, uint32_t* child, uint32_t from, uint32_t count, float limit,
+                              uint32_t to) {
 #ifdef __AVX2__
   const __m256 ts = _mm256_loadu_ps(t + from);
   const __m256i children = _mm256_loadu_si256((const __m256i*)(child + from));

@@ -7,16 +7,16 @@ namespace castray::CASTRAY_ISA {
 
 constexpr uint32_t group_size = 128;
 
-/// Rays prepared for boxes and triangles, each number of all rays side by side. The numerics are those of accel/slab.h and
-/// accel/triangle.h.
+/// Rays prepared for boxes and triangles, each number of all rays side by side. The numerics are those of
+/// accel/slab.h and accel/triangle.h.
 struct RayGroup {
   alignas(64) float near_inverse[3][group_size], near_offset[3][group_size];  // t = plane * inverse - offset
   float far_inverse[3][group_size], far_offset[3][group_size];
   float origin[3][group_size], direction_z[group_size];  // along the ray's own axes x, y and z, the longest
   float shear_x[group_size], shear_y[group_size];
-  float nearest[group_size];  // the greatest t that is still of interest, inclusive
-  uint32_t near_plane[3][group_size];            // of a node's planes, in bytes from its start
-  uint32_t axis[3][group_size];                  // x, y, z of a packet's coordinates, in bytes
+  float nearest[group_size];           // the greatest t that is still of interest, inclusive
+  uint32_t near_plane[3][group_size];  // of a node's planes, in bytes from its start
+  uint32_t axis[3][group_size];        // x, y, z of a packet's coordinates, in bytes
   uint32_t octant[group_size];
   uint32_t traceable[group_size];
 };
@@ -25,13 +25,14 @@ struct RayGroup {
 constexpr uint32_t far_plane_flip[3] = {0x60, 0xa0, 0xe0};
 
 /// Fills lanes [first, first + width) of the group: what SlabTest and TriangleTest do when made.
-CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& bvh, const Float (&o)[3], const Float (&d)[3],
-                            Float t_max) {
+CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& bvh, const Float (&o)[3],
+                            const Float (&d)[3], Float t_max) {
   constexpr float half_ulp = 0x1p-24f;
   constexpr float rounding = 2 * (3 * half_ulp / (1 - 3 * half_ulp));  // 2 gamma(3)
   const Float size = max(abs(d[0]), max(abs(d[1]), abs(d[2])));
   const Float place = max(abs(o[0]), max(abs(o[1]), abs(o[2])));
-  const Float sum = (abs(d[0]) + abs(d[1]) + abs(d[2])) * (abs(o[0]) + abs(o[1]) + abs(o[2]));  // NaN if any is
+  const Float sum =
+      (abs(d[0]) + abs(d[1]) + abs(d[2])) * (abs(o[0]) + abs(o[1]) + abs(o[2]));  // NaN if any is
   const Mask traceable = (size >= Float(0x1p-100f)) & (size <= Float(0x1p100f)) & (place <= Float(0x1p100f)) &
                          (sum <= Float(__builtin_inff())) & (t_max > Float(0.0f));
   store(group.traceable + first, select(traceable, Uint(1u), Uint(0u)));
@@ -56,7 +57,8 @@ CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& 
   store(group.axis[2] + first, along_z(Uint(0u), Uint(row), Uint(2 * row)));
 
   Float reach[3];
-  for (int i = 0; i < 3; ++i) reach[i] = max(abs(Float(bvh.lower[i]) - o[i]), abs(Float(bvh.upper[i]) - o[i]));
+  for (int i = 0; i < 3; ++i)
+    reach[i] = max(abs(Float(bvh.lower[i]) - o[i]), abs(Float(bvh.upper[i]) - o[i]));
   const Float reach_z = along_z(reach[0], reach[1], reach[2]);
   Uint octant(0u);
   for (int i = 0; i < 3; ++i) {

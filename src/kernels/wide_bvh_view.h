@@ -2,13 +2,13 @@
 
 #include <stdint.h>
 
-// A wide bounding volume hierarchy as the kernels see it, and the batches of rays they trace through it: plain data,
-// the same for every instruction set.
+// A wide bounding volume hierarchy as the kernels see it, and the batches of rays they trace through it:
+// plain data, the same for every instruction set.
 
 namespace castray {
 
-inline constexpr int bvh_width = 8;            ///< children of a node
-inline constexpr int packet_size = 8;          ///< triangles tested at once
+inline constexpr int bvh_width = 8;    ///< children of a node
+inline constexpr int packet_size = 8;  ///< triangles tested at once
 inline constexpr uint32_t no_triangle = 0xffffffffu;
 
 /// Eight children: their boxes, plane by plane. 256 bytes, four cache lines.
@@ -16,8 +16,8 @@ struct alignas(64) WideNode {
   float lower[3][bvh_width];  ///< an unused slot holds the empty box, +infinity to -infinity
   float upper[3][bvh_width];
   uint32_t child[bvh_width];  ///< a node's index, or leaf_flag | first packet * 4 | number of packets - 1
-  uint32_t order[8];          ///< for each octant of directions (bit i: component i is negative), the slots from the
-                              ///< farthest to the nearest, four bits each, the farthest lowest
+  uint32_t order[8];  ///< for each octant of directions (bit i: component i is negative), the slots from the
+                      ///< farthest to the nearest, four bits each, the farthest lowest
 };
 inline constexpr uint32_t leaf_flag = 0x80000000u;
 inline constexpr uint32_t max_leaf_packets = 4;
@@ -31,10 +31,10 @@ struct alignas(64) TrianglePacket {
 struct WideBvhView {
   const WideNode* nodes;
   const TrianglePacket* packets;
-  uint32_t root;                ///< as a child; meaningless without triangles
+  uint32_t root;  ///< as a child; meaningless without triangles
   uint32_t triangles;
-  int depth;                    ///< edges from the root to its deepest leaf
-  float lower[3], upper[3];     ///< of everything
+  int depth;                 ///< edges from the root to its deepest leaf
+  float lower[3], upper[3];  ///< of everything
 };
 
 /// Rays origin + t * direction, 0 < t < t_max, and what they hit.
