@@ -31,6 +31,19 @@ ErrorMetrics measure_errors(const Image& image, const Image& reference, double p
 /// The greatest component of an image, 1 where none is positive: the peak of psnr for radiance.
 double greatest_component(const Image& image);
 
+/// Structural similarity (Wang et al. 2004) of two images of shown values in [0,1] of one size: 11x11
+/// Gaussian window of sigma 1.5, mean over the channels and the pixels whose window lies inside; where a side
+/// is shorter than the window, windows are cut at the image's edge. At most 1, which only equal images reach.
+double ssim(const Image& shown, const Image& reference);
+
+/// Mean FLIP error in [0,1] of two sRGB-encoded images of one size, at 67.02 pixels per degree (Andersson et
+/// al. 2020).
+double flip(const Image& shown, const Image& reference);
+
+/// Mean HDR FLIP error in [0,1] of two images of radiance of one size: per pixel the greatest FLIP error over
+/// a range of exposures that the reference gives (Andersson et al. 2021).
+double flip_hdr(const Image& image, const Image& reference);
+
 /// A picture of the error, in values for display: per pixel sqrt(mean over channels of (x-r)^2 / (r^2 +
 /// 0.01)), so that its mean square is relmse, on a logarithmic scale from 0.001 (black) to 1 (pale yellow),
 /// always the same; with a labelled colour bar below.
