@@ -25,6 +25,16 @@ struct SampleRange {
   friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
+/// Sequences are scrambled anew after this many sample indices: index i belongs to replicate i /
+/// replicate_length. Replicates are independent of one another, so the spread of their means measures the
+/// noise, which the spread of samples of one scramble does not.
+inline constexpr std::uint64_t replicate_length = std::uint64_t{1} << 20;
+
+/// Pixels (x,y) of the full image with x / noise_block and y / noise_block equal form a block, the least unit
+/// whose noise is told. Neighbouring pixels may share paths, so that their errors cannot be taken for
+/// independent.
+inline constexpr int noise_block = 8;
+
 /// What a render adds up: per pixel the sum of its samples' radiance and their number.
 ///
 /// Sums do not depend on the order of `add` and `merge`. A sample is a float; below 2^-36 of `scale` it is
@@ -53,8 +63,23 @@ class Film {
   /// The means, as an image of the window's size.
   Image image() const;
 
+  /// From now on the film keeps the sums of its replicates apart, per block. All samples so far must be of
+  /// one replicate.
+  void keep_replicates();
+  bool keeps_replicates() const { return !replicates_.empty(); }
+
+  /// A rectangle of blocks: column x0 <= x < x1, row y0 <= y < y1 of the full image's grid.
+  struct Blocks {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+  };
+  /// All that the window meets.
+  Blocks blocks() const;
+  /// The mean radiance over some blocks in each replicate kept, by ascending replicate.
+  std::vector<Vec3d> replicate_means(const Blocks& blocks) const;
+
   /// Adds the samples of `other`. Throws InputError that names what differs, and changes nothing, if the two
-  /// are not parts of one render (window, scale, `key`) or if their sample ranges overlap.
+  /// are not parts of one render (window, scale, `key`, whether replicates are kept) or if their sample
+  /// ranges overlap.
   void merge(const Film& other);
 
   /// All that the samples depend on besides their index (scene, seed, options), as "name=value" items
@@ -66,6 +91,13 @@ class Film {
  private:
   struct Sum {
     double high = 0, low = 0;
+    Sum& operator+=(const Sum& other);  ///< exact
+  };
+  /// The sums of one replicate.
+  struct Replicate {
+    std::uint64_t index = 0;
+    std::vector<Sum> sums;              ///< 3 per block
+    std::vector<std::uint64_t> counts;  ///< samples, per block
   };
   friend struct FilmFile;  // reads and writes the sums as they are
 
@@ -78,6 +110,7 @@ class Film {
   double scale_ = 1;
   std::vector<Sum> sums_;  ///< 3 per pixel
   std::vector<std::uint32_t> counts_;
+  std::vector<Replicate> replicates_;  ///< ascending
 };
 
 /// The items of the film's key, and "spp", the number of its sample indices.

@@ -61,6 +61,13 @@ Film::Film(const Window& window, double brightest)
       sums_(3 * static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height())),
       counts_(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height())) {}
 
+Film::Sum& Film::Sum::operator+=(const Sum& other) {
+  const ExactSum exact = two_sum(high, other.high);
+  high = exact.sum;
+  low += other.low + exact.error;
+  return *this;
+}
+
 void Film::add(int x, int y, const Vec3f& radiance) {
   const std::size_t pixel = index(x, y);
   const double small = scale_ * 0x1p-36;
@@ -91,6 +98,47 @@ Image Film::image() const {
   return image;
 }
 
+Film::Blocks Film::blocks() const {
+  const auto last = [](int end) { return (end - 1) / noise_block + 1; };
+  return {window_.x0 / noise_block, window_.y0 / noise_block, last(window_.x1), last(window_.y1)};
+}
+
+void Film::keep_replicates() {
+  const Blocks all = blocks();
+  const auto columns = static_cast<std::size_t>(all.x1 - all.x0),
+             rows = static_cast<std::size_t>(all.y1 - all.y0);
+  Replicate replicate{samples.empty() ? 0 : samples.front().first / replicate_length,
+                      std::vector<Sum>(3 * columns * rows), std::vector<std::uint64_t>(columns * rows)};
+  for (int y = window_.y0; y < window_.y1; ++y)
+    for (int x = window_.x0; x < window_.x1; ++x) {
+      const std::size_t block = static_cast<std::size_t>(y / noise_block - all.y0) * columns +
+                                static_cast<std::size_t>(x / noise_block - all.x0);
+      for (std::size_t c = 0; c < 3; ++c) replicate.sums[3 * block + c] += sums_[3 * index(x, y) + c];
+      replicate.counts[block] += counts_[index(x, y)];
+    }
+  replicates_ = {std::move(replicate)};
+}
+
+std::vector<Vec3d> Film::replicate_means(const Blocks& wanted) const {
+  const Blocks all = blocks();
+  std::vector<Vec3d> means;
+  for (const Replicate& replicate : replicates_) {
+    Vec3d sum;
+    double count = 0;
+    for (int y = wanted.y0; y < wanted.y1; ++y)
+      for (int x = wanted.x0; x < wanted.x1; ++x) {
+        const std::size_t block =
+            static_cast<std::size_t>(y - all.y0) * static_cast<std::size_t>(all.x1 - all.x0) +
+            static_cast<std::size_t>(x - all.x0);
+        const Sum* s = &replicate.sums[3 * block];
+        sum += Vec3d{s[0].high + s[0].low, s[1].high + s[1].low, s[2].high + s[2].low};
+        count += static_cast<double>(replicate.counts[block]);
+      }
+    means.push_back(count > 0 ? sum / count : Vec3d{});
+  }
+  return means;
+}
+
 void Film::merge(const Film& other) {
   if (window_ != other.window_)
     throw InputError("the films show different windows: " + to_string(window_) + " and " +
@@ -101,10 +149,20 @@ void Film::merge(const Film& other) {
   if (scale_ != other.scale_)
     throw InputError(
         fmt::format("the films are of scenes of different brightness: {} and {}", scale_, other.scale_));
+  if (keeps_replicates() != other.keeps_replicates())
+    throw InputError(
+        "one film keeps replicates and the other does not; render both with --replicates, or none");
   samples = joined_ranges(samples, other.samples);
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    const ExactSum high = two_sum(sums_[i].high, other.sums_[i].high);
-    sums_[i] = {high.sum, sums_[i].low + other.sums_[i].low + high.error};
+  for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
+  for (const Replicate& theirs : other.replicates_) {
+    const auto ours = std::lower_bound(replicates_.begin(), replicates_.end(), theirs.index,
+                                       [](const Replicate& r, std::uint64_t i) { return r.index < i; });
+    if (ours == replicates_.end() || ours->index != theirs.index) {
+      replicates_.insert(ours, theirs);
+      continue;
+    }
+    for (std::size_t i = 0; i < ours->sums.size(); ++i) ours->sums[i] += theirs.sums[i];
+    for (std::size_t i = 0; i < ours->counts.size(); ++i) ours->counts[i] += theirs.counts[i];
   }
   for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
   nonfinite_samples += other.nonfinite_samples;

@@ -1,5 +1,6 @@
 #include <zlib.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -33,27 +34,26 @@ std::uint32_t checksum(std::string_view bytes) {
 
 struct FilmFile {
   static std::string bytes_of(const Film& film) {
-    json ranges = json::array();
+    json ranges = json::array(), replicates = json::array();
     for (const SampleRange& range : film.samples) ranges.push_back({range.first, range.count});
+    for (const Film::Replicate& replicate : film.replicates_) replicates.push_back(replicate.index);
     const Window& w = film.window_;
     const json header{{"window", {w.full_width, w.full_height, w.x0, w.y0, w.x1, w.y1}},
                       {"scale", film.scale_},
                       {"samples", ranges},
+                      {"replicates", replicates},
                       {"key", film.key},
                       {"nonfinite_samples", film.nonfinite_samples},
                       {"version", CASTRAY_VERSION}};
     std::string bytes =
         std::string(magic) + header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
-    const auto append = [&](const auto& value) {
-      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    for (const Film::Sum& sum : film.sums_) {
-      const ExactSum rounded = two_sum(sum.high, sum.low);
-      append(rounded.sum);
-      append(rounded.error);
+    append_sums(bytes, film.sums_);
+    append(bytes, film.counts_);
+    for (const Film::Replicate& replicate : film.replicates_) {
+      append_sums(bytes, replicate.sums);
+      append(bytes, replicate.counts);
     }
-    for (const std::uint32_t count : film.counts_) append(count);
-    append(checksum(bytes));
+    append(bytes, std::array{checksum(bytes)});
     return bytes;
   }
 
@@ -70,20 +70,47 @@ struct FilmFile {
     }
     const std::string_view data = bytes.substr(header_end + 1);
     const auto pixels = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
-    const std::size_t sum_bytes = 3 * sizeof(Film::Sum) * pixels, count_bytes = 4 * pixels;
-    if (data.size() != sum_bytes + count_bytes + 4)
-      fail(data.size() < sum_bytes + count_bytes + 4 ? "is truncated" : "has bytes behind its end");
+    const Film::Blocks grid = film.blocks();
+    const auto blocks =
+        static_cast<std::size_t>(grid.x1 - grid.x0) * static_cast<std::size_t>(grid.y1 - grid.y0);
+    constexpr std::size_t colour_bytes = 3 * sizeof(Film::Sum);
+    const std::size_t length = pixels * (colour_bytes + 4) +
+                               film.replicates_.size() * blocks * (colour_bytes + 8) + sizeof(std::uint32_t);
+    if (data.size() != length) fail(data.size() < length ? "is truncated" : "has bytes behind its end");
     std::uint32_t stored;
-    std::memcpy(&stored, data.data() + sum_bytes + count_bytes, 4);
-    if (stored != checksum(bytes.substr(0, bytes.size() - 4))) fail("is corrupt: its checksum is wrong");
-    film.sums_.resize(3 * pixels);
-    film.counts_.resize(pixels);
-    std::memcpy(film.sums_.data(), data.data(), sum_bytes);
-    std::memcpy(film.counts_.data(), data.data() + sum_bytes, count_bytes);
+    std::memcpy(&stored, data.data() + length - sizeof stored, sizeof stored);
+    if (stored != checksum(bytes.substr(0, bytes.size() - sizeof stored)))
+      fail("is corrupt: its checksum is wrong");
+    const char* at = data.data();
+    at = read_values(at, film.sums_, 3 * pixels);
+    at = read_values(at, film.counts_, pixels);
+    for (Film::Replicate& replicate : film.replicates_) {
+      at = read_values(at, replicate.sums, 3 * blocks);
+      at = read_values(at, replicate.counts, blocks);
+    }
     return film;
   }
 
  private:
+  template <class Values>
+  static void append(std::string& bytes, const Values& values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+  }
+
+  static void append_sums(std::string& bytes, const std::vector<Film::Sum>& sums) {
+    for (const Film::Sum& sum : sums) {
+      const ExactSum rounded = two_sum(sum.high, sum.low);
+      append(bytes, std::array{rounded.sum, rounded.error});
+    }
+  }
+
+  template <class T>
+  static const char* read_values(const char* at, std::vector<T>& values, std::size_t count) {
+    values.resize(count);
+    std::memcpy(values.data(), at, count * sizeof(T));
+    return at + count * sizeof(T);
+  }
+
   /// A film without its sums. Throws json::exception also where a value is out of range.
   static Film parse_header(const json& header) {
     const auto demand = [](bool good, const char* what) {
@@ -99,6 +126,11 @@ struct FilmFile {
     demand(film.scale_ > 0 && std::isfinite(film.scale_), "bad scale");
     film.key = header.at("key").get<std::string>();
     film.nonfinite_samples = header.at("nonfinite_samples").get<std::uint64_t>();
+    for (const json& index : header.at("replicates")) {
+      film.replicates_.push_back({index.get<std::uint64_t>(), {}, {}});
+      const std::size_t n = film.replicates_.size();
+      demand(n == 1 || film.replicates_[n - 2].index < film.replicates_[n - 1].index, "bad replicates");
+    }
     std::uint64_t end = 0;
     for (const json& range : header.at("samples")) {
       const auto [first, count] = range.get<std::array<std::uint64_t, 2>>();

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+
+#include "castray/film.h"
+
+namespace castray {
+
+/// Whether two films that keep replicates differ by more than their noise explains.
+struct NoiseTest {
+  double alpha = 0;       ///< family-wise false-alarm rate: two renders of one scene fail at most this often
+  std::size_t tests = 0;  ///< blocks of all sizes times channels
+  double p = 1;           ///< smallest p-value, times `tests` (Bonferroni), at most 1
+  bool differs() const { return p < alpha; }
+
+  // Where p is smallest:
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels of the full image
+  int channel = 0;
+  double t = 0;                         ///< difference of the means in standard errors
+  double mean = 0, mean_reference = 0;  ///< radiance
+};
+
+/// Compares the mean of each block of 8x8, 16x16, ... pixels, up to the whole window, in each channel by a
+/// t-test on the replicates' means (Welch 1947: unequal variances, the number of replicates may differ).
+/// Films are taken for independent; where they share seeds the test is more careful, not less. Differences of
+/// 4 units in the last place of a float are never counted. Throws InputError unless both films show one
+/// window and keep at least two replicates.
+NoiseTest test_noise(const Film& film, const Film& reference, double alpha);
+
+/// The probability that Student's t with `freedom` degrees of freedom lies beyond +-t.
+double t_test_p_value(double t, double freedom);
+
+}  // namespace castray
