@@ -17,5 +17,6 @@ Run add_compare(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_merge(CLI::App& app);
 Run add_convert(CLI::App& app);
+Run add_bench(CLI::App& app);
 
 }  // namespace castray::cli

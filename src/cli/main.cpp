@@ -22,6 +22,7 @@ constexpr Subcommand subcommands[] = {
     // in the order of use: render, compare, bench, info, merge, convert
     {"render", "render a scene to an image", add_render},
     {"compare", "measure how an image differs from its reference", add_compare},
+    {"bench", "time against error, of castray and of other renderers", add_bench},
     {"info", "what a scene holds, what it needs, warnings", add_info},
     {"merge", "add films of disjoint sample ranges", add_merge},
     {"convert", "write an image in another format", add_convert},

@@ -1,0 +1,195 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "bench/ablation.h"
+#include "bench/crop.h"
+#include "bench/plot.h"
+#include "bench/report.h"
+#include "image/formats.h"
+
+namespace castray {
+
+namespace {
+
+constexpr const char* page_style = R"(
+:root{color-scheme:light dark;--ink:#222;--soft:#666;--line:#ddd;--paper:#fff;--bar:#0072b2}
+@media(prefers-color-scheme:dark){:root{--ink:#ddd;--soft:#999;--line:#3a3e44;--paper:#17191c;--bar:#4db2f0}}
+body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:64rem;margin:auto;padding:1rem}
+h1{font-size:1.6rem}h2{margin-top:3rem;border-top:1px solid var(--line);padding-top:1rem}
+.soft,figcaption{color:var(--soft);font-size:.85rem}code{font-size:.85em;overflow-wrap:anywhere}
+.scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem}
+th,td{padding:.25rem .7rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
+th:first-child,td:first-child{text-align:left}svg{max-width:100%;height:auto}
+.pictures{display:flex;flex-wrap:wrap;gap:1rem}figure{margin:0;width:14rem}figure img{width:100%;image-rendering:pixelated;display:block}
+.bar{display:inline-block;height:.7em;background:var(--bar);vertical-align:middle}
+)";
+
+std::string base64(const std::string& bytes) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+/// A PNG with sRGB's curve, as an address that holds it.
+std::string data_address(const Image& image) {
+  const Image shown = displayed(image, {});
+  Image8 pixels{image.width, image.height, {}};
+  for (const Vec3f& pixel : shown.pixels)
+    for (int c = 0; c < 3; ++c)
+      pixels.bytes.push_back(static_cast<unsigned char>(std::lround(std::clamp(pixel[c], 0.f, 1.f) * 255)));
+  std::ostringstream png;
+  write_png(png, pixels, {});
+  return "data:image/png;base64," + base64(png.str());
+}
+
+std::vector<PlotSeries> series_of(const BenchScene& scene) {
+  std::vector<PlotSeries> all;
+  for (const BenchCurve& curve : scene.curves) {
+    if (curve.kind == ContenderKind::ablation) continue;
+    PlotSeries series{curve.name, {}, curve.fit};
+    for (const BenchPoint& point : curve.points) series.points.push_back({point.seconds, point.relmse});
+    all.push_back(std::move(series));
+  }
+  return all;
+}
+
+std::string cells(const char* tag, const std::vector<std::string>& texts) {
+  std::string row = "<tr>";
+  for (const std::string& text : texts) row += fmt::format("<{0}>{1}</{0}>", tag, text);
+  return row + "</tr>\n";
+}
+
+std::string number(std::optional<double> value) { return value ? fmt::format("{:.3g}", *value) : "\u2013"; }
+
+std::string points_table(const BenchScene& scene) {
+  std::string text =
+      "<div class=\"scroll\"><table>\n" + cells("th", {"", "spp", "seconds", "whole process", "relMSE", "MSE",
+                                                       "relMSE everywhere", "1/(relMSE \u00d7 s)"});
+  for (const BenchCurve& curve : scene.curves) {
+    if (curve.kind == ContenderKind::ablation) continue;
+    for (const BenchPoint& point : curve.points)
+      text += cells("td", {escape_markup(curve.name), fmt::format("{}", point.spp), number(point.seconds),
+                           number(point.process_seconds), number(point.relmse), number(point.mse),
+                           number(point.relmse_everywhere), fmt::format("{:.4g}", point.efficiency)});
+  }
+  return text + "</table></div>\n";
+}
+
+std::string fits_table(const BenchScene& scene) {
+  std::vector<std::string> head{"", "slope"};
+  for (const double error : target_errors) head.push_back(fmt::format("seconds to {:.0e}", error));
+  std::string text = "<div class=\"scroll\"><table>\n" + cells("th", head);
+  for (const BenchCurve& curve : scene.curves) {
+    if (curve.kind == ContenderKind::ablation || !curve.fit) continue;
+    std::vector<std::string> row{escape_markup(curve.name), fmt::format("\u2212{:.2f}", curve.fit->slope)};
+    for (const double error : target_errors) row.push_back(number(curve.fit->seconds_to(error)));
+    text += cells("td", row);
+  }
+  return text +
+         "</table></div>\n<p class=\"soft\">Slope of log relMSE over log seconds; times from that "
+         "line.</p>\n";
+}
+
+std::string picture(const Image& image, const Window& crop, const std::string& name,
+                    const std::string& numbers) {
+  return fmt::format(
+      "<figure><img alt=\"{0}\" src=\"{1}\"><figcaption><b>{0}</b><br>{2}</figcaption></figure>\n",
+      escape_markup(name), data_address(cropped(image, crop)), numbers);
+}
+
+std::string pictures(const BenchScene& scene) {
+  std::string text =
+      fmt::format("<h3>Pictures after {:.3g} s</h3>\n<div class=\"pictures\">\n", scene.equal_seconds);
+  for (const BenchCurve& curve : scene.curves) {
+    if (curve.kind == ContenderKind::ablation || !curve.equal_time) continue;
+    const EqualTimeRun& equal = *curve.equal_time;
+    text += picture(equal.image, scene.crop, curve.name,
+                    fmt::format("{} spp, {:.3g} s, relMSE {:.2e}, FLIP {:.4f}", equal.spp, equal.seconds,
+                                equal.relmse, equal.flip));
+  }
+  text += picture(scene.reference_image, scene.crop, "reference", escape_markup(scene.reference));
+  return text + "</div>\n";
+}
+
+std::string ablation(const BenchScene& scene) {
+  const std::vector<AblationRow> rows = ablation_rows(scene);
+  if (rows.empty()) return "";
+  std::string text = "<h3>One technique off</h3>\n<div class=\"scroll\"><table>\n" +
+                     cells("th", {"", "flags", "\u00d7 seconds", "\u00d7 relMSE", "\u00d7 efficiency", ""});
+  for (const AblationRow& row : rows) {
+    if (!row.failure.empty()) continue;
+    const double width = std::min(row.efficiency, 2.0) * 6;
+    text += cells("td", {escape_markup(row.name), "<code>" + escape_markup(row.detail) + "</code>",
+                         fmt::format("{:.2f}", row.seconds), fmt::format("{:.2f}", row.relmse),
+                         fmt::format("{:.3g}", row.efficiency),
+                         fmt::format("<span class=\"bar\" style=\"width:{:.2f}rem\"></span>", width)});
+  }
+  return text + "</table></div>\n";
+}
+
+std::string details(const BenchScene& scene) {
+  std::string text = "<details><summary>What was run</summary>\n<ul>\n";
+  for (const BenchCurve& curve : scene.curves)
+    text += fmt::format("<li>{} ({}): <code>{}</code> {}</li>\n", escape_markup(curve.name),
+                        kind_name(curve.kind), escape_markup(curve.detail), escape_markup(curve.failure));
+  return text + "</ul></details>\n";
+}
+
+std::string section(const BenchScene& scene) {
+  std::string text =
+      fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}, {}\u00d7{} pixels; reference: {}, relMSE {:.1e}. ",
+                  escape_markup(scene.name), escape_markup(scene.file), scene.width, scene.height,
+                  escape_markup(scene.reference), scene.reference_noise);
+  text += scene.masked
+              ? fmt::format("Errors are those of the {:.1f} % of the pixels that see no emitter directly.",
+                            100 * scene.counted)
+              : "Errors are those of all pixels.";
+  text += fmt::format("</p>\n<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n{2}</svg>\n",
+                      plot_width, plot_height, log_log_plot(scene.name, series_of(scene)));
+  return text + points_table(scene) + fits_table(scene) + pictures(scene) + ablation(scene) + details(scene);
+}
+
+}  // namespace
+
+std::string bench_html(const BenchReport& report) {
+  std::string text = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+      "<title>castray: time against error</title>\n<style>{}{}</style></head><body>\n"
+      "<h1>Time against error</h1>\n"
+      "<p>castray {}, {} threads, {}; medians of {} seeds. Seconds are of the render alone; relMSE is free "
+      "of the "
+      "references' noise.</p>\n<p><code>{}</code></p>\n",
+      page_style, plot_style(), escape_markup(report.version), report.threads, escape_markup(report.machine),
+      report.seeds, escape_markup(report.command));
+  for (const BenchScene& scene : report.scenes) text += section(scene);
+  return text + "</body></html>\n";
+}
+
+std::string bench_svg(const BenchReport& report) {
+  const int columns = report.scenes.size() > 1 ? 2 : 1;
+  const int rows = (static_cast<int>(report.scenes.size()) + columns - 1) / columns;
+  std::string text = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
+      "<style>{2}.paper{{fill:#fff}}@media(prefers-color-scheme:dark){{.paper{{fill:#17191c}}}}</style>\n"
+      "<rect class=\"paper\" width=\"{0}\" height=\"{1}\"/>\n",
+      columns * plot_width, rows * plot_height, plot_style());
+  for (std::size_t i = 0; i < report.scenes.size(); ++i)
+    text +=
+        fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n",
+                    static_cast<int>(i) % columns * plot_width, static_cast<int>(i) / columns * plot_height,
+                    log_log_plot(report.scenes[i].name, series_of(report.scenes[i])));
+  return text + "</svg>\n";
+}
+
+}  // namespace castray

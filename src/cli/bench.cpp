@@ -1,0 +1,115 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <memory>
+
+#include "bench/report.h"
+#include "castray/error.h"
+#include "cli/bench_meter.h"
+#include "cli/commands.h"
+#include "cli/configuration.h"
+#include "cli/peer.h"
+#include "cli/process.h"
+#include "cli/scene_bench.h"
+#include "core/files.h"
+#include "core/threads.h"
+
+namespace castray::cli {
+
+namespace {
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown processor";
+}
+
+/// The words that this process was started with.
+std::string command_line() {
+  std::string words = read_file("/proc/self/cmdline"), line;
+  for (std::size_t at = 0; at < words.size(); at = words.find('\0', at) + 1) {
+    const std::string word = words.c_str() + at;
+    const bool plain = word.find_first_of(" '\"{}$&|;<>()*?") == std::string::npos;
+    line += (line.empty() ? "" : " ") + (plain ? word : shell_word(word));
+  }
+  return line;
+}
+
+void check_flags(const BenchFlags& flags) {
+  if (flags.seeds < 1) throw InputError("--seeds: at least 1");
+  for (const std::uint64_t spp : flags.spp)
+    if (spp < 1) throw InputError("--spp: each budget must be at least 1");
+  for (const double seconds : flags.seconds)
+    if (!(seconds > 0)) throw InputError("--seconds: each budget must be above 0");
+  for (const std::string& peer : flags.peers) Peer::parse(peer);
+  for (const std::string& configuration : flags.configurations)
+    configured_options({}, split_configuration(configuration).flags);
+  for (const std::string& file : {flags.json, flags.csv, flags.html, flags.svg})
+    if (!file.empty()) check_writable(file);
+}
+
+int bench(const BenchFlags& flags, const std::string& command) {
+  check_flags(flags);
+  BenchReport report{CASTRAY_VERSION, cpu_name(),
+                     command,         flags.threads > 0 ? flags.threads : available_threads(),
+                     flags.seeds,     {}};
+  BenchMeter meter(flags.quiet);
+  for (const std::string& scene : flags.scenes) {
+    report.scenes.push_back(bench_scene(flags, scene, meter));
+    // After each scene, so that a long benchmark that is stopped leaves what it has.
+    if (!flags.json.empty()) write_file(flags.json, bench_json(report));
+    if (!flags.csv.empty()) write_file(flags.csv, bench_csv(report));
+    if (!flags.html.empty()) write_file(flags.html, bench_html(report));
+    if (!flags.svg.empty()) write_file(flags.svg, bench_svg(report));
+  }
+  meter.clear();
+  fmt::print("{}", bench_table(report));
+  return 0;
+}
+
+}  // namespace
+
+Run add_bench(CLI::App& app) {
+  const auto flags = std::make_shared<BenchFlags>();
+  const auto option = [&app](const char* name, auto& value, const char* metavar, const char* help) {
+    CLI::Option* made = app.add_option(name, value, help);
+    return made->type_name(metavar)->allow_extra_args(false);
+  };
+  app.add_option("scenes", flags->scenes, "scene files")->required();
+  option("--config", flags->configurations, "NAME=FLAGS",
+         "castray with these rendering flags; repeatable [castray=]");
+  option("--peer", flags->peers, "NAME=COMMAND",
+         "another renderer; {scene} {spp} {seed} {out} {width} {height} {threads} are filled in; it writes a "
+         ".pfm to {out} and prints 'seconds: X'; repeatable");
+  option("--spp", flags->spp, "N,...", "budgets in samples per pixel [4,16,64]")->delimiter(',');
+  option("--seconds", flags->seconds, "X,...", "budgets in seconds of rendering")->delimiter(',');
+  option("--seeds", flags->seeds, "N", "renders per budget; medians are shown [8]");
+  option("--size", flags->size, "WxH", "in pixels [the references', else the scene's]");
+  option("--threads", flags->threads, "N", "of castray's own renders [all]");
+  app.add_flag("--ablation", flags->ablation, "also measure with each technique off in turn");
+  option("--equal-time", flags->equal_time, "X",
+         "seconds for the pictures and FLIP [the slowest one's smallest budget]");
+  option("--reference", flags->reference, "A,B",
+         "two independent images; {scene} stands for the scene's name [made, and kept in the cache]");
+  option("--reference-spp", flags->reference_spp, "N", "of each reference made [1024]");
+  option("--reference-flags", flags->reference_flags, "FLAGS",
+         "rendering flags of the references made [--reuse off]");
+  option("--cache", flags->cache, "FOLDER", "where the references made are kept [~/.cache/castray]");
+  option("--mask", flags->mask, "emitters|none",
+         "errors of the pixels away from directly seen emitters, or of all [emitters]")
+      ->check(CLI::IsMember({"emitters", "none"}).description(""));
+  option("--json", flags->json, "FILE", "write all numbers here");
+  option("--csv", flags->csv, "FILE", "write the medians here");
+  option("--html", flags->html, "FILE", "write a self-contained page here");
+  option("--svg", flags->svg, "FILE", "write the plots here");
+  app.add_flag("-q,--quiet", flags->quiet, "no progress");
+  return [flags] {
+    if (flags->spp.empty() && flags->seconds.empty()) flags->spp = {4, 16, 64};
+    if (flags->configurations.empty()) flags->configurations = {"castray="};
+    return bench(*flags, command_line());
+  };
+}
+
+}  // namespace castray::cli

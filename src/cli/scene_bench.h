@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/report.h"
+#include "cli/bench_meter.h"
+
+namespace castray::cli {
+
+/// The flags of `castray bench`, as given.
+struct BenchFlags {
+  std::vector<std::string> scenes, configurations, peers;
+  std::vector<std::uint64_t> spp;
+  std::vector<double> seconds;
+  std::uint64_t seeds = 8;
+  double equal_time = 0;
+  std::string size;
+  std::string reference, reference_flags = "--reuse off", cache;
+  std::uint64_t reference_spp = 1024;
+  std::string mask = "emitters";
+  bool ablation = false;
+  int threads = 0;
+  std::string json, csv, html, svg;
+  bool quiet = false;
+};
+
+/// The benchmark of one scene file.
+BenchScene bench_scene(const BenchFlags& flags, const std::string& file, BenchMeter& meter);
+
+}  // namespace castray::cli
