@@ -1,0 +1,103 @@
+"""Renders a castray scene with Mitsuba 3."""
+
+import os
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+import peer
+
+
+def options(parser):
+    parser.add_argument("--variant", default="llvm_ad_rgb", help="llvm_ad_rgb, scalar_rgb")
+    parser.add_argument("--sampler", default="multijitter",
+                        help="independent, stratified, multijitter, orthogonal, ldsampler")
+
+
+def bsdf(material):
+    def two_sided(inner):
+        return {"type": "twosided", "inner": inner}
+
+    def rgb(value):
+        return {"type": "rgb", "value": list(value)}
+
+    if material.type == "diffuse":
+        return two_sided({"type": "diffuse", "reflectance": rgb(material.kd)})
+    if material.type == "conductor":
+        mirror = {"material": "none", "specular_reflectance": rgb(material.reflectance)}
+        if material.alpha == 0:
+            return two_sided({"type": "conductor", **mirror})
+        return two_sided({"type": "roughconductor", "distribution": "ggx", "alpha": material.alpha, **mirror})
+    if material.alpha == 0:
+        return {"type": "dielectric", "int_ior": material.ior, "ext_ior": 1.0}
+    return {"type": "roughdielectric", "distribution": "ggx", "alpha": material.alpha, "int_ior": material.ior,
+            "ext_ior": 1.0}
+
+
+def write_ply(path, mesh):
+    """Binary PLY; corners are shared only where there are no normals."""
+    positions, triangles, names = mesh.positions, mesh.triangles, ["x", "y", "z"]
+    if mesh.normals is not None:
+        positions = np.hstack([positions[triangles].reshape(-1, 3), mesh.normals.reshape(-1, 3)])
+        triangles = np.arange(len(positions), dtype=np.uint32).reshape(-1, 3)
+        names += ["nx", "ny", "nz"]
+    faces = np.empty(len(triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, triangles
+    with open(path, "wb") as file:
+        header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(positions)}"]
+        header += [f"property float {name}" for name in names]
+        header += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header\n"]
+        file.write("\n".join(header).encode())
+        file.write(positions.astype("<f4").tobytes())
+        file.write(faces.tobytes())
+
+
+def scene_dictionary(mi, scene, arguments, folder):
+    result = {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": -1},
+        "sensor": {
+            "type": "perspective", "fov": scene.fov, "fov_axis": "y",
+            "to_world": mi.ScalarTransform4f().look_at(origin=scene.position.tolist(), target=scene.look_at.tolist(),
+                                                       up=scene.up.tolist()),
+            "film": {"type": "hdrfilm", "width": scene.width, "height": scene.height, "pixel_format": "rgb",
+                     "component_format": "float32", "rfilter": {"type": "box"}},
+            "sampler": {"type": arguments.sampler, "sample_count": arguments.spp},
+        },
+    }
+    if max(scene.environment) > 0:
+        result["environment"] = {"type": "constant", "radiance": {"type": "rgb", "value": scene.environment}}
+    for number, mesh in enumerate(scene.meshes):
+        file = Path(folder, f"{number}.ply")
+        write_ply(file, mesh)
+        shape = {"type": "ply", "filename": str(file), "face_normals": mesh.normals is None,
+                 "bsdf": bsdf(mesh.material)}
+        if mesh.material.emits:
+            shape["emitter"] = {"type": "area", "radiance": {"type": "rgb", "value": list(mesh.material.ke)}}
+        result[f"mesh{number}"] = shape
+    return result
+
+
+def main():
+    arguments, scene = peer.parse(__doc__, options)
+    scene.refuse("mitsuba", types=("microfacet",))
+    if arguments.variant.startswith("llvm"):
+        os.environ.setdefault("DRJIT_LIBLLVM_PATH", "/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1")
+    import mitsuba as mi
+    mi.set_variant(arguments.variant)
+    with tempfile.TemporaryDirectory() as folder:
+        loaded = mi.load_dict(scene_dictionary(mi, scene, arguments, folder))
+
+    def render(seed):
+        start = time.perf_counter()
+        pixels = np.array(mi.render(loaded, seed=seed, spp=arguments.spp))
+        return pixels, time.perf_counter() - start
+
+    if arguments.variant.startswith("llvm"):
+        render(arguments.seed + 1)  # compiles the kernels, which is not counted
+    peer.finish(arguments, *render(arguments.seed))
+
+
+main()
