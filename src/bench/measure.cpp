@@ -91,7 +91,8 @@ class Measurement {
       scene_.curves[c].points.emplace_back().spp = spp;
       planned_seconds_ += costs_[c].of(spp) * static_cast<double>(plan_.seeds);
     }
-    planned_seconds_ += costs_[c].of(budgets.front());  // about the render at equal time
+    if (contenders_[c].kind != ContenderKind::ablation)
+      planned_seconds_ += costs_[c].of(budgets.front());  // about the render at equal time
   }
 
   void measure_all(std::uint64_t seed) {
@@ -145,7 +146,7 @@ class Measurement {
 
   void measure_equal_time(std::size_t c) {
     BenchCurve& curve = scene_.curves[c];
-    if (curve.points.empty()) return;
+    if (curve.points.empty() || curve.kind == ContenderKind::ablation) return;
     const BenchPoint& largest = curve.points.back();
     costs_[c].seconds_per_spp = largest.seconds / static_cast<double>(largest.spp);
     const std::uint64_t spp = costs_[c].spp_in(scene_.equal_seconds);

@@ -125,14 +125,14 @@ std::string ablation(const BenchScene& scene) {
   const std::vector<AblationRow> rows = ablation_rows(scene);
   if (rows.empty()) return "";
   std::string text = "<h3>One technique off</h3>\n<div class=\"scroll\"><table>\n" +
-                     cells("th", {"", "flags", "\u00d7 seconds", "\u00d7 relMSE", "\u00d7 efficiency", ""});
+                     cells("th", {"", "\u00d7 seconds", "\u00d7 relMSE", "\u00d7 efficiency", "", "flags"});
   for (const AblationRow& row : rows) {
     if (!row.failure.empty()) continue;
     const double width = std::min(row.efficiency, 2.0) * 6;
-    text += cells("td", {escape_markup(row.name), "<code>" + escape_markup(row.detail) + "</code>",
-                         fmt::format("{:.2f}", row.seconds), fmt::format("{:.2f}", row.relmse),
-                         fmt::format("{:.3g}", row.efficiency),
-                         fmt::format("<span class=\"bar\" style=\"width:{:.2f}rem\"></span>", width)});
+    text += cells("td", {escape_markup(row.name), fmt::format("{:.2f}", row.seconds),
+                         fmt::format("{:.2f}", row.relmse), fmt::format("{:.3g}", row.efficiency),
+                         fmt::format("<span class=\"bar\" style=\"width:{:.2f}rem\"></span>", width),
+                         "<code>" + escape_markup(row.detail) + "</code>"});
   }
   return text + "</table></div>\n";
 }

@@ -25,12 +25,15 @@ Image read_radiance(const std::string& file) {
   return image.image;
 }
 
-/// The film of an earlier run, if `file` holds one of this very render.
-std::optional<Film> kept_film(const std::filesystem::path& file, const std::string& key) {
+/// The film of an earlier run, if `file` holds one of this very render; what another version of the program
+/// left there is made anew.
+std::optional<Film> kept_film(const std::filesystem::path& file, const std::string& key) try {
   if (!std::filesystem::exists(file)) return std::nullopt;
   Film film = read_film(file);
   if (film.key != key || film.samples.size() != 1 || film.samples[0].first != 0) return std::nullopt;
   return film;
+} catch (const InputError&) {
+  return std::nullopt;
 }
 
 }  // namespace

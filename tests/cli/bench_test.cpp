@@ -100,6 +100,12 @@ TEST_CASE("bench keeps the references it made, and takes given ones") {
   };
   CHECK(relmse("kept.json") == relmse("made.json"));
   CHECK(relmse("given.json") == relmse("made.json"));
+
+  write_file(kept, "no film");  // as a version with another format may have left it
+  REQUIRE(run_castray(small_bench({"--config", "a=--integrator reference", "--json", "again.json"}),
+                      folder.path())
+              .exit_code == 0);
+  CHECK(relmse("again.json") == relmse("made.json"));
 }
 
 TEST_CASE("what bench cannot use gets one line and exit code 2") {
