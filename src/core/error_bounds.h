@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -14,20 +15,36 @@ constexpr T gamma_bound(int n) {
   return static_cast<T>(n) * half_ulp / (T(1) - static_cast<T>(n) * half_ulp);
 }
 
-/// A point interpolated on a triangle, with a bound of its rounding error per coordinate.
+template <class T>
+Vec3<T> magnitude(const Vec3<T>& v) {
+  return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+}
+
+/// Error, per coordinate, that a ray/triangle test adds where the triangle reaches `distance` from the ray's
+/// origin: moving a vertex there and shearing it (TriangleTest) makes up to 4 roundings of terms no larger
+/// than twice that distance, in two axes, and interpolating the depth some more.
+template <class T>
+Vec3<T> error_of_test(T distance) {
+  return Vec3<T>(distance * gamma_bound<T>(24));
+}
+
+/// A point on a triangle from which a ray starts or at which it ends. `error`, per coordinate, bounds how far
+/// rounding may put the point from the plane in which a ray/triangle test finds the triangle.
 template <class T>
 struct TrianglePoint {
   Vec3<T> p, error;
 };
 
+/// Interpolation errs by 7 roundings of sum |b_i v_i| (Pharr et al., Physically Based Rendering, "Managing
+/// rounding error"). Without the test's own error, triangles in the plane of an axis, where interpolation is
+/// exact, would shadow themselves.
 template <class T>
 TrianglePoint<T> point_on_triangle(const Vec3<T>& v0, const Vec3<T>& v1, const Vec3<T>& v2, T b1, T b2) {
   const T b0 = T(1) - b1 - b2;
   const Vec3<T> a = v0 * b0, b = v1 * b1, c = v2 * b2;
-  const auto magnitude = [](const Vec3<T>& v) {
-    return Vec3<T>(std::abs(v.x), std::abs(v.y), std::abs(v.z));
-  };
-  return {a + b + c, (magnitude(a) + magnitude(b) + magnitude(c)) * gamma_bound<T>(7)};
+  const T extent = std::max(max_component(magnitude(v1 - v0)), max_component(magnitude(v2 - v0)));
+  return {a + b + c,
+          (magnitude(a) + magnitude(b) + magnitude(c)) * gamma_bound<T>(7) + error_of_test(extent)};
 }
 
 /// The origin of a ray that leaves a surface on the side of `direction`: `p` pushed along the unit normal by
@@ -37,8 +54,7 @@ TrianglePoint<T> point_on_triangle(const Vec3<T>& v0, const Vec3<T>& v1, const V
 template <class T>
 Vec3<T> offset_origin(const Vec3<T>& p, const Vec3<T>& error, const Vec3<T>& normal,
                       const Vec3<T>& direction) {
-  const T distance =
-      std::abs(normal.x) * error.x + std::abs(normal.y) * error.y + std::abs(normal.z) * error.z;
+  const T distance = dot(magnitude(normal), error);
   const Vec3<T> push = normal * (dot(direction, normal) < 0 ? -distance : distance);
   const auto outward = [](T q, T step) {
     constexpr T infinity = std::numeric_limits<T>::infinity();

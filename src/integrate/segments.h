@@ -8,6 +8,12 @@
 
 namespace castray {
 
+/// The error bound of a light point as the end of `segment`: its triangle is tested from the far end.
+template <class T>
+Vec3<T> target_error(const LightPoint<T>& y, const Vec3<T>& segment) {
+  return y.error + error_of_test(max_component(magnitude(segment)));
+}
+
 /// Where rays start and which segments are free: by the hits' own error bounds, or, for comparison, by the
 /// classic absolute epsilon (then the scene is to be in the file's own coordinates).
 template <class T>
@@ -38,7 +44,7 @@ struct Segments {
       const Hit<T> hit = accel.closest(ray);
       return hit.found() && length(y.p - (from + ray.direction * hit.t)) < static_cast<T>(*epsilon);
     }
-    const Vec3<T> to = offset_origin(y.p, y.error, y.normal, -towards);
+    const Vec3<T> to = offset_origin(y.p, target_error(y, towards), y.normal, -towards);
     return !accel.occluded(Ray<T>{from, to - from, T(1)});
   }
 };
@@ -47,10 +53,9 @@ struct Segments {
 /// and cos cos' / |x' - x|^2 would be the quotient of two rounding errors.
 template <class T>
 bool in_one_plane(const Surface<T>& x, const LightPoint<T>& y, const Vec3<T>& segment) {
-  const Vec3<T> error = x.error + y.error;
+  const Vec3<T> error = x.error + target_error(y, segment);
   const auto within_error = [&](const Vec3<T>& n) {
-    return std::abs(dot(n, segment)) <=
-           std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
+    return std::abs(dot(n, segment)) <= dot(magnitude(n), error);
   };
   return within_error(x.normal) || within_error(y.normal);
 }

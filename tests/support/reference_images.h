@@ -1,0 +1,85 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "castray/image.h"
+#include "statistics.h"
+
+namespace castray::test {
+
+/// Two independent renders of a standard scene by another program; tests/golden/README.md.
+struct ReferencePair {
+  Image a, b;
+
+  explicit ReferencePair(const std::string& scene) : a(read(scene + "_A")), b(read(scene + "_B")) {}
+
+  Vec3d mean(std::size_t pixel) const { return (Vec3d(a.pixels[pixel]) + Vec3d(b.pixels[pixel])) * 0.5; }
+
+  /// relMSE of `x`, free of the references' noise.
+  double relmse(const Image& x) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < x.pixels.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        const double r = mean(i)[c], v = x.pixels[i][c];
+        sum += (v - a.pixels[i][c]) * (v - b.pixels[i][c]) / (r * r + 0.01);
+      }
+    return sum / (3 * static_cast<double>(x.pixels.size()));
+  }
+
+ private:
+  static Image read(const std::string& name) {
+    return read_image(std::string(CASTRAY_ROOT) + "/tests/golden/reference/" + name + ".pfm").image;
+  }
+};
+
+/// Means of a channel over blocks of size x size pixels.
+inline std::vector<double> block_means(const Image& image, int size) {
+  const int columns = image.width / size, rows = image.height / size;
+  std::vector<double> means(3 * static_cast<std::size_t>(columns * rows));
+  for (int y = 0; y < rows * size; ++y)
+    for (int x = 0; x < columns * size; ++x)
+      for (int c = 0; c < 3; ++c)
+        means[static_cast<std::size_t>(3 * (y / size * columns + x / size) + c)] +=
+            static_cast<double>(image.at(x, y)[c]) / (size * size);
+  return means;
+}
+
+/// z-scores of the blocks of several independent renders of one image against what they should be on average.
+struct BlockScores {
+  double largest = 0, rms = 0;
+  std::size_t count = 0;
+};
+
+/// `variance`: of `expected` itself. A score follows Student's t; it is turned into a normal one of the same
+/// probability (Wallace 1959). Blocks without any variance are left out.
+inline BlockScores block_scores(const std::vector<std::vector<double>>& renders,
+                                const std::vector<double>& expected, const std::vector<double>& variance) {
+  BlockScores scores;
+  const auto degrees = static_cast<double>(renders.size() - 1);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    Mean mean;
+    for (const auto& render : renders) mean.add(render[i]);
+    const double error = std::sqrt(mean.error() * mean.error() + variance[i]);
+    if (!(error > 0)) continue;
+    const double t = (mean.mean() - expected[i]) / error;
+    const double z = (8 * degrees + 1) / (8 * degrees + 3) * std::sqrt(degrees * std::log1p(t * t / degrees));
+    scores.largest = std::max(scores.largest, z);
+    scores.rms += z * z;
+    ++scores.count;
+  }
+  scores.rms = std::sqrt(scores.rms / static_cast<double>(std::max<std::size_t>(scores.count, 1)));
+  return scores;
+}
+
+/// The |z| that the largest of `count` scores exceeds with probability `false_alarm`.
+inline double score_limit(std::size_t count, double false_alarm) {
+  double low = 0, high = 10;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (two_sided_probability(middle) * static_cast<double>(count) > false_alarm ? low : high) = middle;
+  }
+  return high;
+}
+
+}  // namespace castray::test
