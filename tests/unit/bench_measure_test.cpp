@@ -112,7 +112,7 @@ TEST_CASE("an ablation says what leaving a technique out costs") {
   REQUIRE(rows[0].efficiency == Approx(0.5).epsilon(0.05));
 }
 
-TEST_CASE("an ablation that the scene does not allow is told; any other failure stops the benchmark") {
+TEST_CASE("an ablation that the scene does not allow is told, any other failure stops the benchmark") {
   const auto refuse = [](std::uint64_t, std::uint64_t) -> Rendering {
     throw InputError("no such thing here");
   };
