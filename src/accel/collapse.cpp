@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace castray {
 namespace {
@@ -93,23 +94,28 @@ class Treelet {
 
 std::uint32_t packets_of(const BvhNode& leaf) { return (leaf.count + packet_size - 1) / packet_size; }
 
+constexpr std::uint32_t node_blocks = sizeof(WideNode) / block_bytes;
+constexpr std::uint32_t packet_blocks = sizeof(TrianglePacket) / block_bytes;
+
 /// How much a subtree fills.
 struct Extent {
-  std::uint32_t nodes = 0, packets = 0;
+  std::uint64_t nodes = 0, packets = 0;
   int depth = 0;
 
-  void add(const Extent& child) {
+  std::uint64_t blocks() const { return nodes * node_blocks + packets * packet_blocks; }
+
+  void add(const Extent& child, int levels) {
     nodes += child.nodes;
     packets += child.packets;
-    depth = std::max(depth, child.depth + 1);
+    depth = std::max(depth, child.depth + levels);
   }
 };
 
-/// A subtree that one task makes: where its root goes, and where its nodes and packets begin.
+/// A subtree that one task makes: where its root is told, and where its blocks begin.
 struct Job {
   const BvhNode* root;
   std::uint32_t* child;
-  std::uint32_t node = 0, packet = 0;
+  std::uint32_t block;
   Extent extent;
 };
 
@@ -118,67 +124,58 @@ class Collapser {
   Collapser(const BinaryTree& tree, const MeshView& mesh) : tree_(tree), mesh_(mesh) {}
 
   WideTree run(int threads) {
-    const Extent all = plan(tree_.root, 0);
+    Extent total = measure(tree_.root, 0, &jobs_);
     const auto count = static_cast<std::int64_t>(jobs_.size());
+    const auto job = [&](std::int64_t i) -> Job& { return jobs_[static_cast<std::size_t>(i)]; };
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (count > 1)
-    for (std::int64_t i = 0; i < count; ++i)
-      jobs_[static_cast<std::size_t>(i)].extent = measure(*jobs_[static_cast<std::size_t>(i)].root);
-    Extent total = all;
-    for (Job& job : jobs_) {
-      job.node = total.nodes;
-      job.packet = total.packets;
-      total.nodes += job.extent.nodes;
-      total.packets += job.extent.packets;
-      total.depth = std::max(total.depth, top_levels + job.extent.depth);
+    for (std::int64_t i = 0; i < count; ++i) job(i).extent = measure(*job(i).root, 0, nullptr);
+    for (Job& j : jobs_) {
+      j.block = static_cast<std::uint32_t>(total.blocks());
+      total.add(j.extent, top_levels);
     }
-    WideTree wide;
-    wide.nodes = AlignedArray<WideNode>(total.nodes);
-    wide.packets = AlignedArray<TrianglePacket>(total.packets);
-    wide.depth = total.depth;
-    wide_ = &wide;
-    std::uint32_t node = 0, packet = 0;
-    std::size_t job = 0;
-    wide.root = make(tree_.root, node, packet, 0, &job);
+    if (total.blocks() > max_blocks)
+      throw std::length_error("the scene has too many triangles for one hierarchy");
+
+    WideTree wide{BlockArray(total.blocks() * block_bytes), static_cast<std::uint32_t>(total.nodes), 0,
+                  total.depth};
+    blocks_ = wide.blocks.data();
+    std::uint32_t block = 0;
+    Job* next = jobs_.data();
+    wide.root = make(tree_.root, block, 0, &next);
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (count > 1)
     for (std::int64_t i = 0; i < count; ++i) {
-      Job& j = jobs_[static_cast<std::size_t>(i)];
-      *j.child = make(*j.root, j.node, j.packet, 0, nullptr);
+      std::uint32_t first = job(i).block;
+      *job(i).child = make(*job(i).root, first, 0, nullptr);
     }
     return wide;
   }
 
  private:
   static constexpr int top_levels = 3;
+  static constexpr std::uint64_t max_blocks = (std::uint64_t{1} << 32) / child_unit;
 
-  /// Measures the levels above the jobs, and lists the jobs from left to right.
-  Extent plan(const BvhNode& node, int level) {
+  /// With `jobs`, leaves out the subtrees `top_levels` down, and lists them.
+  Extent measure(const BvhNode& node, int level, std::vector<Job>* jobs) const {
     if (node.is_leaf()) return {0, packets_of(node), 0};
-    if (level == top_levels) {
-      jobs_.push_back({&node, nullptr, 0, 0, {}});
+    if (jobs && level == top_levels) {
+      jobs->push_back({&node, nullptr, 0, {}});
       return {};
     }
     const Treelet treelet(node, tree_);
     Extent extent{1, 0, 0};
-    for (int slot = 0; slot < treelet.children(); ++slot) extent.add(plan(treelet.child(slot), level + 1));
+    for (int slot = 0; slot < treelet.children(); ++slot)
+      extent.add(measure(treelet.child(slot), level + 1, jobs), 1);
     return extent;
   }
 
-  Extent measure(const BvhNode& node) const {
-    if (node.is_leaf()) return {0, packets_of(node), 0};
-    const Treelet treelet(node, tree_);
-    Extent extent{1, 0, 0};
-    for (int slot = 0; slot < treelet.children(); ++slot) extent.add(measure(treelet.child(slot)));
-    return extent;
-  }
-
-  /// Writes the subtree from `node` and `packet` on, which it moves past what it wrote. With `job`, leaves
-  /// the subtrees of jobs out.
-  std::uint32_t make(const BvhNode& binary, std::uint32_t& node, std::uint32_t& packet, int level,
-                     std::size_t* job) {
-    if (binary.is_leaf()) return make_leaf(binary, packet);
+  /// Writes the subtree from `block` on, which it moves past what it wrote. With `next`, leaves out the
+  /// subtrees of jobs, from *next on.
+  std::uint32_t make(const BvhNode& binary, std::uint32_t& block, int level, Job** next) {
+    if (binary.is_leaf()) return make_leaf(binary, block);
     const Treelet treelet(binary, tree_);
-    const std::uint32_t index = node++;
-    WideNode& wide = wide_->nodes[index];
+    const std::uint32_t child = block * child_unit;
+    WideNode& wide = *reinterpret_cast<WideNode*>(blocks_ + std::size_t{block} * block_bytes);
+    block += node_blocks;
     for (int slot = 0; slot < bvh_width; ++slot) {
       const bool used = slot < treelet.children();
       for (int axis = 0; axis < 3; ++axis) {
@@ -190,21 +187,22 @@ class Collapser {
     }
     for (std::uint32_t octant = 0; octant < 8; ++octant) wide.order[octant] = treelet.order(octant);
     for (int slot = 0; slot < treelet.children(); ++slot) {
-      const BvhNode& child = treelet.child(slot);
-      if (job && level + 1 == top_levels && !child.is_leaf()) {
-        jobs_[(*job)++].child = &wide.child[slot];
+      const BvhNode& node = treelet.child(slot);
+      if (next && level + 1 == top_levels && !node.is_leaf()) {
+        (*next)++->child = &wide.child[slot];
       } else {
-        wide.child[slot] = make(child, node, packet, level + 1, job);
+        wide.child[slot] = make(node, block, level + 1, next);
       }
     }
-    return index;
+    return child;
   }
 
-  std::uint32_t make_leaf(const BvhNode& leaf, std::uint32_t& packet) {
-    const std::uint32_t first = packet;
-    packet += packets_of(leaf);
+  std::uint32_t make_leaf(const BvhNode& leaf, std::uint32_t& block) {
+    const std::uint32_t child = block * child_unit + leaf_flag + packets_of(leaf) - 1;
+    auto* const packets = reinterpret_cast<TrianglePacket*>(blocks_ + std::size_t{block} * block_bytes);
+    block += packets_of(leaf) * packet_blocks;
     for (std::uint32_t i = 0; i < packets_of(leaf) * packet_size; ++i) {
-      TrianglePacket& out = wide_->packets[first + i / packet_size];
+      TrianglePacket& out = packets[i / packet_size];
       const std::uint32_t lane = i % packet_size;
       const bool used = i < leaf.count;
       const std::uint32_t triangle = used ? tree_.primitives[leaf.first + i] : no_triangle;
@@ -214,12 +212,12 @@ class Collapser {
         for (int axis = 0; axis < 3; ++axis) out.vertex[v][axis][lane] = p[axis];
       }
     }
-    return leaf_flag | (first * max_leaf_packets) | (packets_of(leaf) - 1);
+    return child;
   }
 
   const BinaryTree& tree_;
   const MeshView& mesh_;
-  WideTree* wide_ = nullptr;
+  char* blocks_ = nullptr;
   std::vector<Job> jobs_;
 };
 

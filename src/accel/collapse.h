@@ -1,6 +1,6 @@
 #pragma once
 
-#include "accel/aligned_array.h"
+#include "accel/block_array.h"
 #include "accel/bvh_node.h"
 #include "accel/ray.h"
 #include "kernels/wide_bvh_view.h"
@@ -8,8 +8,8 @@
 namespace castray {
 
 struct WideTree {
-  AlignedArray<WideNode> nodes;
-  AlignedArray<TrianglePacket> packets;
+  BlockArray blocks;  ///< as WideBvhView describes them
+  std::uint32_t nodes = 0;
   std::uint32_t root = 0;
   int depth = 0;
 };

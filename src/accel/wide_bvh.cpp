@@ -16,21 +16,19 @@ WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality) {
         .threads = threads, .max_leaf = packet_size, .leaf_block_log2 = 3, .traversal_cost = 0.5f};
     const BinaryTree tree = build_binary_tree(mesh, parameters);
     WideTree wide = collapse(tree, mesh, threads);
-    bvh.nodes_ = std::move(wide.nodes);
-    bvh.packets_ = std::move(wide.packets);
+    bvh.blocks_ = std::move(wide.blocks);
     bvh.view_.root = wide.root;
     bvh.view_.depth = wide.depth;
     std::copy_n(tree.root.lower, 3, bvh.view_.lower);
     std::copy_n(tree.root.upper, 3, bvh.view_.upper);
     bvh.stats_.sah_cost = tree.sah_cost;
     bvh.stats_.depth = wide.depth;
+    bvh.stats_.nodes = wide.nodes;
   }
-  bvh.view_.nodes = bvh.nodes_.data();
-  bvh.view_.packets = bvh.packets_.data();
+  bvh.view_.blocks = bvh.blocks_.data();
   bvh.view_.triangles = mesh.count;
   bvh.stats_.triangles = mesh.count;
-  bvh.stats_.nodes = static_cast<std::uint32_t>(bvh.nodes_.size());
-  bvh.stats_.bytes = bvh.nodes_.bytes() + bvh.packets_.bytes();
+  bvh.stats_.bytes = bvh.blocks_.bytes();
   bvh.stats_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return bvh;
 }

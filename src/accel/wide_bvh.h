@@ -1,6 +1,6 @@
 #pragma once
 
-#include "accel/aligned_array.h"
+#include "accel/block_array.h"
 #include "accel/bvh.h"
 #include "castray/render.h"
 #include "kernels/wide_bvh_view.h"
@@ -20,8 +20,7 @@ class WideBvh {
   const BvhStats& stats() const { return stats_; }
 
  private:
-  AlignedArray<WideNode> nodes_;
-  AlignedArray<TrianglePacket> packets_;
+  BlockArray blocks_;
   WideBvhView view_{};
   BvhStats stats_;
 };

@@ -96,15 +96,14 @@ CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_
   uint8_t nodes[slots + 1], leaves[slots + 1];
   uint32_t node_count = 0, leaf_count = 0, next = 0;
 
+  const auto address = [&](uint32_t c) { return bvh.blocks + (uint64_t)(c / child_unit) * block_bytes; };
   const auto queue = [&](uint32_t s, uint32_t c) {
     child[s] = c;
-    const bool is_leaf = c & leaf_flag;
-    const char* const address = is_leaf ? (const char*)(bvh.packets + (c & ~leaf_flag) / max_leaf_packets)
-                                        : (const char*)(bvh.nodes + c);
-    for (int line = 0; line < 5; ++line) __builtin_prefetch(address + 64 * line);
+    for (uint32_t line = 0; line < 5; ++line) __builtin_prefetch(address(c) + line * block_bytes);
     nodes[node_count] = (uint8_t)s;
     leaves[leaf_count] = (uint8_t)s;
-    node_count += !is_leaf;
+    const uint32_t is_leaf = c / leaf_flag & 1;
+    node_count += 1 - is_leaf;
     leaf_count += is_leaf;
   };
   const auto start = [&](uint32_t s) {
@@ -128,7 +127,7 @@ CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_
     for (uint32_t i = 0; i < n; ++i) {
       const uint32_t s = now[i];
       const Stack stack{stack_t + s * room, stack_child + s * room};
-      size[s] += enter_node(bvh.nodes[child[s]], group, ray[s], stack, size[s]);
+      size[s] += enter_node(*(const WideNode*)address(child[s]), group, ray[s], stack, size[s]);
       advance(s);
     }
     n = leaf_count;
@@ -136,7 +135,7 @@ CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_
     leaf_count = 0;
     for (uint32_t i = 0; i < n; ++i) {
       const uint32_t s = now[i], r = ray[s];
-      const TrianglePacket* packet = bvh.packets + (child[s] & ~leaf_flag) / max_leaf_packets;
+      const TrianglePacket* packet = (const TrianglePacket*)address(child[s]);
       bool found = false;
       for (uint32_t left = child[s] % max_leaf_packets + 1; left; --left) {
         found |= intersect_packet(*packet++, group, r, out.t[r], out.triangle[r], out.b1[r], out.b2[r]);

@@ -11,26 +11,30 @@ inline constexpr int bvh_width = 8;    ///< children of a node
 inline constexpr int packet_size = 8;  ///< triangles tested at once
 inline constexpr uint32_t no_triangle = 0xffffffffu;
 
-/// Eight children: their boxes, plane by plane. 256 bytes, four cache lines.
-struct alignas(64) WideNode {
+/// Nodes and triangle packets lie in one array of blocks, a cache line each. A child is its first block times
+/// child_unit, plus leaf_flag + packets - 1 if it is a leaf.
+inline constexpr uint32_t block_bytes = 64;
+inline constexpr uint32_t child_unit = 8;
+inline constexpr uint32_t leaf_flag = 4;
+inline constexpr uint32_t max_leaf_packets = 4;
+
+/// Eight children: their boxes, plane by plane.
+struct alignas(block_bytes) WideNode {
   float lower[3][bvh_width];  ///< an unused slot holds the empty box, +infinity to -infinity
   float upper[3][bvh_width];
-  uint32_t child[bvh_width];  ///< a node's index, or leaf_flag | first packet * 4 | number of packets - 1
+  uint32_t child[bvh_width];
   uint32_t order[8];  ///< for each octant of directions (bit i: component i is negative), the slots from the
                       ///< farthest to the nearest, four bits each, the farthest lowest
 };
-inline constexpr uint32_t leaf_flag = 0x80000000u;
-inline constexpr uint32_t max_leaf_packets = 4;
 
 /// Eight triangles, vertex by vertex and axis by axis, exactly as in the mesh. Unused lanes are a point.
-struct alignas(64) TrianglePacket {
+struct alignas(block_bytes) TrianglePacket {
   float vertex[3][3][packet_size];
   uint32_t triangle[packet_size];
 };
 
 struct WideBvhView {
-  const WideNode* nodes;
-  const TrianglePacket* packets;
+  const char* blocks;
   uint32_t root;  ///< as a child; meaningless without triangles
   uint32_t triangles;
   int depth;                 ///< edges from the root to its deepest leaf

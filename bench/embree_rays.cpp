@@ -1,0 +1,151 @@
+// The same as bench/rays.cpp with Embree in castray's place: the rival to measure against.
+
+#include <embree3/rtcore.h>
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <type_traits>
+
+#include "ray_files.h"
+
+namespace castray {
+namespace {
+
+struct Options {
+  std::string mesh, rays, mode = "closest", quality = "medium", out;
+  bool robust = false;
+  int threads = 1, repeat = 5;
+};
+
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
+using Scene = std::unique_ptr<std::remove_pointer_t<RTCScene>, decltype(&rtcReleaseScene)>;
+
+Device make_device(int threads) {
+  return {rtcNewDevice(fmt::format("threads={},user_threads={}", threads, threads).c_str()),
+          rtcReleaseDevice};
+}
+
+Scene make_scene(RTCDevice device, const std::vector<float>& soup, const Options& options) {
+  Scene scene(rtcNewScene(device), rtcReleaseScene);
+  if (options.robust) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), options.quality == "low"    ? RTC_BUILD_QUALITY_LOW
+                                       : options.quality == "high" ? RTC_BUILD_QUALITY_HIGH
+                                                                   : RTC_BUILD_QUALITY_MEDIUM);
+  RTCGeometry mesh = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const std::size_t vertices = soup.size() / 3;
+  auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+      mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices));
+  std::copy(soup.begin(), soup.end(), positions);
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), vertices / 3));
+  for (std::uint32_t i = 0; i < vertices; ++i) indices[i] = i;
+  rtcCommitGeometry(mesh);
+  rtcAttachGeometry(scene.get(), mesh);
+  rtcReleaseGeometry(mesh);
+  return scene;
+}
+
+/// Seconds of the build alone.
+double build(RTCScene scene) {
+  const auto start = std::chrono::steady_clock::now();
+  rtcCommitScene(scene);
+  return seconds_since(start);
+}
+
+double median_build(const std::vector<float>& soup, const Options& options, int threads) {
+  const Device device = make_device(threads);
+  std::vector<double> seconds;
+  for (int i = 0; i < options.repeat; ++i)
+    seconds.push_back(build(make_scene(device.get(), soup, options).get()));
+  return median(seconds);
+}
+
+RTCRay ray_at(const RaySet& rays, std::size_t i) {
+  const auto& n = rays.number;
+  return {n[0][i], n[1][i], n[2][i], 0, n[3][i], n[4][i], n[5][i], 0, n[6][i], ~0u, 0, 0};
+}
+
+void trace(RTCScene scene, const RaySet& rays, bool any, std::size_t first, std::size_t last,
+           RayResult* out) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  for (std::size_t i = first; i < last; ++i) {
+    if (any) {
+      RTCRay ray = ray_at(rays, i);
+      rtcOccluded1(scene, &context, &ray);
+      out[i] = any_result(ray.tfar < 0);
+    } else {
+      RTCRayHit hit{};
+      hit.ray = ray_at(rays, i);
+      hit.hit.geomID = hit.hit.primID = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene, &context, &hit);
+      const bool found = hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+      out[i] = found ? RayResult{hit.ray.tfar, hit.hit.primID} : RayResult{};
+    }
+  }
+}
+
+void measure(const Options& options) {
+  const std::vector<float> soup = read_floats(options.mesh, 9);
+  const RaySet rays = read_rays(options.rays);
+  const double build1 = median_build(soup, options, 1), build2 = median_build(soup, options, 2);
+  const Device device = make_device(options.threads);
+  const Scene scene = make_scene(device.get(), soup, options);
+  build(scene.get());
+
+  std::vector<RayResult> results(rays.size());
+  constexpr std::int64_t run = 4096;
+  const auto count = static_cast<std::int64_t>(rays.size());
+  std::vector<double> seconds;
+  for (int i = 0; i < options.repeat; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+#pragma omp parallel for schedule(dynamic) num_threads(options.threads)
+    for (std::int64_t first = 0; first < count; first += run) {
+      trace(scene.get(), rays, options.mode == "any", static_cast<std::size_t>(first),
+            static_cast<std::size_t>(std::min(first + run, count)), results.data());
+    }
+    seconds.push_back(seconds_since(start));
+  }
+  if (!options.out.empty()) write_results(results, options.out);
+  fmt::print("{} triangles, {} rays, {} hit; Embree {}, quality {}, {} threads\n", soup.size() / 9, count,
+             count_hits(results), options.robust ? "robust" : "fast", options.quality, options.threads);
+  fmt::print("build {:.4f} s with 1 thread, {:.4f} s with 2\n", build1, build2);
+  fmt::print("{} {:.2f} million rays/s\n", options.mode, static_cast<double>(count) / median(seconds) / 1e6);
+}
+
+void run(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Embree's rays per second on the meshes and rays of files.", "castray-embree-rays"};
+  app.add_option("mesh", options.mesh, "raw float32, 9 a triangle")->required();
+  app.add_option("--rays", options.rays, "raw float32: ox oy oz dx dy dz t_max")->required();
+  app.add_flag("--robust", options.robust);
+  app.add_option("--quality", options.quality)
+      ->check(CLI::IsMember({"low", "medium", "high"}))
+      ->capture_default_str();
+  app.add_option("--threads", options.threads)->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--mode", options.mode)->check(CLI::IsMember({"closest", "any"}))->capture_default_str();
+  app.add_option("--repeat", options.repeat)->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--out", options.out, "t (float32) and triangle (uint32) of each ray");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    app.exit(success);
+    return;
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what());
+  }
+  measure(options);
+}
+
+}  // namespace
+}  // namespace castray
+
+int main(int argc, char** argv) {
+  try {
+    castray::run(argc, argv);
+  } catch (const castray::InputError& error) {
+    fmt::print(stderr, "castray-embree-rays: error: {}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "castray/error.h"
+#include "core/files.h"
+
+namespace castray {
+
+static_assert(std::endian::native == std::endian::little, "the files are little-endian");
+
+/// A file of raw little-endian float32, `group` of them a record.
+inline std::vector<float> read_floats(const std::filesystem::path& file, std::size_t group) {
+  const std::string bytes = read_file(file);
+  if (bytes.size() % (group * sizeof(float)) != 0)
+    throw InputError({file.string()},
+                     "is not a whole number of records of " + std::to_string(group) + " float32");
+  std::vector<float> floats(bytes.size() / sizeof(float));
+  std::memcpy(floats.data(), bytes.data(), bytes.size());
+  return floats;
+}
+
+/// Rays, each number of all of them side by side: ox oy oz dx dy dz t_max.
+struct RaySet {
+  std::vector<float> number[7];
+
+  std::size_t size() const { return number[0].size(); }
+  void add(const float (&ray)[7]) {
+    for (int i = 0; i < 7; ++i) number[i].push_back(ray[i]);
+  }
+};
+
+inline RaySet read_rays(const std::filesystem::path& file) {
+  const std::vector<float> floats = read_floats(file, 7);
+  RaySet rays;
+  for (std::size_t i = 0; i < floats.size(); i += 7) {
+    float ray[7];
+    std::copy_n(floats.begin() + static_cast<std::ptrdiff_t>(i), 7, ray);
+    rays.add(ray);
+  }
+  return rays;
+}
+
+/// What a ray hits. With any-hit, t and the triangle are 0 where something is in the way.
+struct RayResult {
+  float t = std::numeric_limits<float>::infinity();
+  std::uint32_t triangle = 0xffffffffu;  ///< none
+};
+
+inline RayResult any_result(bool occluded) { return occluded ? RayResult{0, 0} : RayResult{}; }
+
+inline std::size_t count_hits(const std::vector<RayResult>& results) {
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](RayResult r) { return r.triangle != 0xffffffffu; }));
+}
+
+inline void write_results(const std::vector<RayResult>& results, const std::filesystem::path& file) {
+  write_file(file, [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(results.data()),
+              static_cast<std::streamsize>(results.size() * sizeof(RayResult)));
+  });
+}
+
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace castray
