@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <optional>
 
 namespace castray {
@@ -92,20 +94,47 @@ Facet make_facet(const Corners& corners, std::uint32_t material, std::uint32_t f
   return f;
 }
 
-std::vector<Facet> merge_triangles(const Scene& scene) {
+/// An undirected edge between two positions.
+using EdgeKey = std::array<float, 6>;
+EdgeKey edge_key(const Vec3f& a, const Vec3f& b) {
+  EdgeKey forward{a.x, a.y, a.z, b.x, b.y, b.z}, backward{b.x, b.y, b.z, a.x, a.y, a.z};
+  return std::min(forward, backward);
+}
+
+/// Facets of the given triangles, each merged with the first later neighbour that it forms a quad with.
+std::vector<Facet> merge_triangles(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
   std::vector<Facet> facets;
-  const auto count = static_cast<std::uint32_t>(scene.triangles.size());
-  std::vector<bool> used(count);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (used[i]) continue;
-    const Corners corners = corners_of(scene, i);
-    std::optional<Corners> quad;
-    std::uint32_t j = i + 1;
-    for (; j < count; ++j)
-      if (!used[j] && scene.triangle_material[j] == scene.triangle_material[i])
-        if ((quad = merged(corners, corners_of(scene, j)))) break;
-    if (quad) used[j] = true;
-    facets.push_back(make_facet(quad ? *quad : corners, scene.triangle_material[i], i, quad ? j : i));
+  std::multimap<EdgeKey, std::uint32_t> waiting;  // triangles without a partner, by their edges
+  std::vector<std::uint32_t> partner(triangles.size(), Scene::no_index);
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const Corners corners = corners_of(scene, triangles[i]);
+    const Index3& index = scene.triangles[triangles[i]];
+    for (std::size_t k = 0; k < 3 && partner[i] == Scene::no_index; ++k) {
+      const auto [begin, end] =
+          waiting.equal_range(edge_key(scene.positions[index[k]], scene.positions[index[(k + 1) % 3]]));
+      for (auto it = begin; it != end; ++it) {
+        const std::uint32_t j = it->second;
+        const bool same_material =
+            scene.triangle_material[triangles[j]] == scene.triangle_material[triangles[i]];
+        if (partner[j] == Scene::no_index && same_material &&
+            merged(corners_of(scene, triangles[j]), corners)) {
+          partner[i] = j;
+          partner[j] = i;
+          break;
+        }
+      }
+    }
+    for (std::size_t k = 0; k < 3 && partner[i] == Scene::no_index; ++k)
+      waiting.emplace(edge_key(scene.positions[index[k]], scene.positions[index[(k + 1) % 3]]), i);
+  }
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t first = triangles[i];
+    const std::uint16_t material = scene.triangle_material[first];
+    if (partner[i] == Scene::no_index)
+      facets.push_back(make_facet(corners_of(scene, first), material, first, first));
+    else if (partner[i] > i)
+      facets.push_back(make_facet(*merged(corners_of(scene, first), corners_of(scene, triangles[partner[i]])),
+                                  material, first, triangles[partner[i]]));
   }
   std::stable_sort(facets.begin(), facets.end(), [](auto& a, auto& b) { return axis_of(a) < axis_of(b); });
   return facets;
@@ -153,7 +182,9 @@ BlockerList Facets::blocker_field_list() const {
 
 Facets make_facets(const Scene& scene) {
   Facets result;
-  result.facets = merge_triangles(scene);
+  std::vector<std::uint32_t> all(scene.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  result.facets = merge_triangles(scene, all);
   for (const Facet& f : result.facets)
     if (can_block(f, scene)) result.blockers.push_back(f);
   const std::size_t padded = (result.blockers.size() + 15) / 16 * 16;
@@ -164,5 +195,7 @@ Facets make_facets(const Scene& scene) {
     }
   return result;
 }
+
+std::vector<Facet> emitting_facets(const Scene& scene) { return merge_triangles(scene, scene.lights); }
 
 }  // namespace castray

@@ -22,4 +22,7 @@ struct Facets {
 /// every facet that has the whole scene on one side of its plane: nothing can be behind it.
 Facets make_facets(const Scene& scene);
 
+/// The facets of the emitting triangles alone.
+std::vector<Facet> emitting_facets(const Scene& scene);
+
 }  // namespace castray

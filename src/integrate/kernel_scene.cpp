@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shading/ggx.h"
+#include "shading/lobe_albedo.h"
+
 namespace castray {
 
 namespace {
@@ -12,12 +15,31 @@ void put(float (&out)[3], const Vec3<T>& v) {
   for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(v[c]);
 }
 
-KernelMaterial kernel_material(const Material& m) {
+KernelAlbedo kernel_albedo(const LobeAlbedo& albedo) {
+  static_assert(LobeAlbedo::intervals == albedo_intervals);
+  KernelAlbedo k{};
+  for (std::size_t i = 0; i <= albedo_intervals; ++i) {
+    k.a[i] = static_cast<float>(albedo.nodes()[i].a);
+    k.b[i] = static_cast<float>(albedo.nodes()[i].b);
+  }
+  return k;
+}
+
+KernelMaterial kernel_material(const Material& m, std::vector<KernelAlbedo>& albedos) {
   KernelMaterial k{};
-  put(k.kd, m.kd);
+  Vec3d kd = m.kd;
+  if (m.type == MaterialType::microfacet) {
+    const LobeAlbedo albedo(m.alpha);
+    kd = m.kd / (Vec3d(1) - albedo.mean(m.ks));
+    k.albedo = static_cast<std::uint32_t>(albedos.size() * albedo_floats);
+    albedos.push_back(kernel_albedo(albedo));
+  }
+  put(k.kd, kd);
   put(k.ks, m.type == MaterialType::conductor ? m.reflectance : m.ks);
   put(k.emission, m.ke);
-  k.alpha = static_cast<float>(m.alpha);
+  k.alpha = Ggx<double>{m.alpha}.smooth() || (m.type == MaterialType::dielectric && m.ior == 1)
+                ? 0.f
+                : static_cast<float>(m.alpha);
   k.ior = static_cast<float>(m.ior);
   k.kind = static_cast<std::uint32_t>(m.type);
   k.two_sided = m.two_sided_emission;
@@ -62,9 +84,21 @@ bool is_parallelogram(const Facet& f) {
   return gap <= 1e-6 * size;
 }
 
-std::vector<KernelLight> make_lights(const std::vector<Facet>& facets, const Scene& scene) {
+/// A light's place along a Morton curve through [-1,1]^3, so that a stratified choice among lights is
+/// stratified in space.
+std::uint64_t place_on_curve(const KernelLight& l) {
+  std::uint64_t place = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double middle = l.origin[c] + (l.edge1[c] + l.edge2[c]) / (l.triangle ? 3.0 : 2.0);
+    const auto cell = static_cast<std::uint64_t>(std::clamp((middle + 1) * 0x1p19, 0.0, 0x1p20 - 1));
+    for (int bit = 0; bit < 20; ++bit) place |= ((cell >> bit) & 1u) << (3 * bit + c);
+  }
+  return place;
+}
+
+/// The facets that emit: what light sampling places points on.
+std::vector<KernelLight> shapes_of_lights(const std::vector<Facet>& facets, const Scene& scene) {
   std::vector<KernelLight> lights;
-  double total = 0;
   for (const Facet& f : facets) {
     const Material& material = scene.materials[f.material];
     if (!material.emits()) continue;
@@ -77,19 +111,28 @@ std::vector<KernelLight> make_lights(const std::vector<Facet>& facets, const Sce
       lights.push_back(triangle_light(f, 2, material));
     }
   }
-  const auto power = [](const KernelLight& l) {
-    return double{l.area} * luminance(Vec3d(l.emission[0], l.emission[1], l.emission[2])) *
-           (l.two_sided ? 2 : 1);
-  };
-  for (const KernelLight& l : lights) total += power(l);
-  double sum = 0;
+  return lights;
+}
+
+double radiance_of(const KernelLight& l) {
+  return luminance(Vec3d(l.emission[0], l.emission[1], l.emission[2])) * (l.two_sided ? 2 : 1);
+}
+
+/// Lights in an order that keeps neighbours together, with their probabilities by power. Returns the total
+/// power / pi.
+double finish_lights(std::vector<KernelLight>& lights) {
+  std::stable_sort(lights.begin(), lights.end(),
+                   [](auto& a, auto& b) { return place_on_curve(a) < place_on_curve(b); });
+  double total = 0, sum = 0;
+  for (const KernelLight& l : lights) total += double{l.area} * radiance_of(l);
   for (KernelLight& l : lights) {
     l.cumulative = static_cast<float>(sum / total);
-    sum += power(l);
+    l.density = static_cast<float>(radiance_of(l) / total);
+    sum += double{l.area} * radiance_of(l);
   }
   for (std::size_t i = 0; i < lights.size(); ++i)  // what the search in the cumulative table really gives
     lights[i].probability = (i + 1 < lights.size() ? lights[i + 1].cumulative : 1.f) - lights[i].cumulative;
-  return lights;
+  return total;
 }
 
 KernelCamera make_kernel_camera(const Camera& camera, int width, int height) {
@@ -102,16 +145,59 @@ KernelCamera make_kernel_camera(const Camera& camera, int width, int height) {
   return k;
 }
 
+TriangleTable triangle_table(const Scene& scene, const std::vector<std::uint32_t>& material_words) {
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Index3) == 3 * sizeof(std::uint32_t));
+  TriangleTable table{};
+  table.positions = &scene.positions.data()->x;
+  table.corners = scene.triangles.data()->data();
+  table.materials = material_words.data();
+  if (!scene.triangle_normals.empty()) {
+    table.normals = &scene.normals.data()->x;
+    table.normal_corners = scene.triangle_normals.data()->data();
+  }
+  if (!scene.triangle_uvs.empty()) {
+    table.uvs = scene.uvs.data()->data();
+    table.uv_corners = scene.triangle_uvs.data()->data();
+  }
+  return table;
+}
+
+std::vector<std::uint32_t> pack_materials(const Scene& scene) {
+  std::vector<std::uint32_t> words((scene.triangle_material.size() + 1) / 2);
+  for (std::size_t i = 0; i < scene.triangle_material.size(); ++i)
+    words[i / 2] |= std::uint32_t{scene.triangle_material[i]} << (16 * (i % 2));
+  return words;
+}
+
 }  // namespace
 
-KernelSceneData::KernelSceneData(const Scene& scene, int width, int height) : facets(make_facets(scene)) {
-  for (const Material& m : scene.materials) materials.push_back(kernel_material(m));
-  lights = make_lights(facets.facets, scene);
-  view.facets = facets.list();
-  view.blockers = facets.blocker_list();
-  view.blocker_fields = facets.blocker_field_list();
-  view.use_list = true;
+KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads) {
+  for (const Material& m : scene.materials) materials.push_back(kernel_material(m, albedos));
+  for (const Texture& t : scene.textures) textures.push_back({&t.texels.data()->x, t.width, t.height});
+  if (plan.list) {
+    facets = make_facets(scene);
+    lights = shapes_of_lights(facets.facets, scene);
+    view.facets = facets.list();
+    view.blockers = facets.blocker_list();
+    view.blocker_fields = facets.blocker_field_list();
+  } else {
+    bvh = WideBvh::build(mesh_of(scene), threads, plan.build);
+    material_words = pack_materials(scene);
+    lights = shapes_of_lights(emitting_facets(scene), scene);
+    view.bvh = bvh->view();
+    view.triangles = triangle_table(scene, material_words);
+  }
+  const double power = finish_lights(lights);
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    if (m.emits())
+      materials[i].light_density =
+          static_cast<float>(luminance(m.ke) * (m.two_sided_emission ? 2 : 1) / power);
+  }
   view.materials = materials.data();
+  view.albedos = albedos.data();
+  view.textures = textures.data();
+  view.texture_count = static_cast<std::uint32_t>(textures.size());
   view.lights = {lights.data(), static_cast<std::uint32_t>(lights.size())};
   view.camera = make_kernel_camera(scene.camera, width, height);
   put(view.environment, scene.environment);

@@ -1,22 +1,29 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "accel/wide_bvh.h"
 #include "castray/render.h"
 #include "castray/scene.h"
 #include "integrate/facets.h"
+#include "integrate/plan.h"
 #include "kernels/api.h"
 
 namespace castray {
 
 /// A scene laid out for the kernels. `view` points into the other members and into the scene: not copyable.
 struct KernelSceneData {
-  KernelSceneData(const Scene& scene, int width, int height);
+  KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads);
   KernelSceneData(const KernelSceneData&) = delete;
   KernelSceneData& operator=(const KernelSceneData&) = delete;
 
-  Facets facets;
+  Facets facets;                              ///< of a list
+  std::optional<WideBvh> bvh;                 ///< of a tree
+  std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   std::vector<KernelMaterial> materials;
+  std::vector<KernelAlbedo> albedos;
+  std::vector<KernelTexture> textures;
   std::vector<KernelLight> lights;
   KernelScene view{};
 };

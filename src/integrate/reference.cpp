@@ -63,7 +63,7 @@ RenderResult trace(const Scene& scene, const Accel& accel, const RenderOptions& 
         }
       }
   };
-  return run_rows(scene, options, progress, start, 1, render_rows);
+  return run_rows(scene, options, progress, start, {.render = render_rows});
 }
 
 template <class T>

@@ -8,6 +8,7 @@
 #include "castray/error.h"
 #include "integrate/reference.h"
 #include "integrate/row_loop.h"
+#include "integrate/wavefront.h"
 
 namespace castray {
 
@@ -67,6 +68,15 @@ void check_wavefront(const RenderOptions& o) {
   require(o.fault == Fault::none, "--fault: only the reference shows the faults; add --integrator reference");
   require(o.precision == Precision::float32,
           "--precision double: only the reference; add --integrator reference");
+  require(o.lights == LightSampling::automatic || o.lights == LightSampling::area,
+          "--lights: only area so far; leave it at auto");
+  const Reuse& r = o.reuse;
+  require(r.automatic || r.width == 0 ||
+              (r.width == 8 && r.height == 8 && r.suffixes >= 1 && r.suffixes <= 64 &&
+               (r.suffixes & (r.suffixes - 1)) == 0),
+          fmt::format("--reuse {}x{}:{}: tiles are 8x8, with a power of two of suffixes up to 64", r.width,
+                      r.height, r.suffixes));
+  require(!o.target_error, "--target-error: not available yet; give --spp or --time-limit");
 }
 
 }  // namespace
@@ -77,7 +87,11 @@ RenderResult render(const Scene& scene, const RenderOptions& options, const Prog
   check_samples(samples_of(options));
   check_numbers(options);
   require(!scene.triangles.empty(), fmt::format("{}: the scene has no triangle", scene.file.string()));
-  if (options.integrator == Integrator::wavefront) check_wavefront(options);
+  // the classic epsilon lives in the reference alone
+  if (options.integrator == Integrator::wavefront && !options.epsilon) {
+    check_wavefront(options);
+    return render_wavefront(scene, options, progress, start);
+  }
   check_reference(options);
   return render_reference(scene, options, progress, start);
 }

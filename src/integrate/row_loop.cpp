@@ -76,10 +76,10 @@ class RowLoop {
     paths_before_ = paths_;
   }
 
-  RenderResult run(int band_height, const RenderRows& render_rows) {
+  RenderResult run(const BandWork& work) {
     begin_ = Clock::now();
     for (const std::uint64_t end : ends_) {
-      run_pass(end, band_height, render_rows);
+      run_pass(end, work);
       note_samples();
       if (!stopped_) report(&result_.film);
       if (stopped_) break;
@@ -112,22 +112,25 @@ class RowLoop {
   }
 
   /// Brings every row to `end` samples.
-  void run_pass(std::uint64_t end, int band_height, const RenderRows& render_rows) {
-    const int bands = (window_.height() + band_height - 1) / band_height;
+  void run_pass(std::uint64_t end, const BandWork& work) {
+    const int bands = (window_.height() + work.height - 1) / work.height + (work.overlap ? 1 : 0);
+    const std::uint64_t begin = finished_.front();  // of all rows, where bands overlap
 #pragma omp parallel for schedule(dynamic, 1) num_threads(result_.stats.threads)
     for (int band = 0; band < bands; ++band) {
-      const int y0 = window_.y0 + band * band_height, y1 = std::min(y0 + band_height, window_.y1);
-      const auto row = static_cast<std::size_t>(y0 - window_.y0);
-      const std::uint64_t done = finished_[row];
-      if (stopped_ || done >= end) continue;
+      const int y0 = window_.y0 + band * work.height, y1 = std::min(y0 + work.height, window_.y1);
+      const std::uint64_t done = work.overlap ? begin : finished_[static_cast<std::size_t>(y0 - window_.y0)];
+      if (done >= end || (stopped_ && !work.overlap)) continue;
       RowStats stats;
-      render_rows(y0, y1, {samples_.first + done, end - done}, result_.film, stats);
-      std::fill_n(finished_.begin() + static_cast<std::ptrdiff_t>(row), y1 - y0, end);
-      paths_ += (end - done) * width() * static_cast<std::uint64_t>(y1 - y0);
+      work.render(y0, y1, {samples_.first + done, end - done}, result_.film, stats);
+      if (!work.overlap) std::fill(row_of(y0), row_of(y1), end);
+      if (y1 > y0) paths_ += (end - done) * width() * static_cast<std::uint64_t>(y1 - y0);
       add(stats);
       report(nullptr);
     }
+    if (work.overlap) std::fill(finished_.begin(), finished_.end(), std::max(begin, end));
   }
+
+  std::vector<std::uint64_t>::iterator row_of(int y) { return finished_.begin() + (y - window_.y0); }
 
   void add(const RowStats& stats) {
     const std::lock_guard lock(mutex_);
@@ -208,8 +211,8 @@ SampleRange samples_of(const RenderOptions& options) {
 }
 
 RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-                      const Film* start, int band_height, const RenderRows& render_rows) {
-  return RowLoop(scene, options, progress, start).run(band_height, render_rows);
+                      const Film* start, const BandWork& work) {
+  return RowLoop(scene, options, progress, start).run(work);
 }
 
 }  // namespace castray

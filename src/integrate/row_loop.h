@@ -14,20 +14,26 @@ struct RowStats {
   std::vector<NonfiniteSample> nonfinite;  ///< samples dropped
 };
 
-/// Adds the samples of rows y0 <= y < y1 of the full image to the film. Called by several threads at a time,
-/// for different rows.
-using RenderRows =
-    std::function<void(int y0, int y1, const SampleRange& samples, Film& film, RowStats& stats)>;
+/// What an integrator does with a band of rows.
+struct BandWork {
+  int height = 1;  ///< of a band
+  /// Bands may add to rows of their neighbours: they see to it that no two threads add to one pixel at a
+  /// time, there is one band more than fit the window, and a stop waits for the end of the pass.
+  bool overlap = false;
+  /// Adds the samples of the band that starts at row y0 of the full image to the film. Called by several
+  /// threads at a time, for different bands.
+  std::function<void(int y0, int y1, const SampleRange& samples, Film& film, RowStats& stats)> render;
+};
 
 /// The loop around every integrator: passes over the image, each for some of the samples; in a pass OpenMP
-/// hands out bands of `band_height` rows dynamically, and nothing is shared but the band counter. Tells
+/// hands out bands of rows dynamically, and nothing is shared but the band counter. Tells
 /// `progress`, stops at its wish or at the time limit, and fills in all of the stats that it knows.
 ///
 /// As film sums are exact, the passes do not show in the result. They make an early stop leave a whole image
 /// and a checkpoint possible: between passes no row is in work. `start`, if not null, is the film of an
 /// earlier run of the same render, whose samples are not rendered again.
 RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-                      const Film* start, int band_height, const RenderRows& render_rows);
+                      const Film* start, const BandWork& work);
 
 /// The window that is rendered: the crop, or all of the image.
 Window window_of(const Scene& scene, const RenderOptions& options);

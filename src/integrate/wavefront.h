@@ -9,8 +9,9 @@ namespace castray {
 /// be had.
 const KernelApi& choose_kernel(const std::string& name);
 
-/// The fast integrator: same expected image as castRay. `options` complete: no automatic size left.
+/// The fast integrator: the same expected image as castRay, by kernels that trace whole batches of paths.
+/// Options are taken as checked by `render`.
 RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
-                              const ProgressCallback& progress);
+                              const ProgressCallback& progress, const Film* start);
 
 }  // namespace castray

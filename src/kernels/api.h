@@ -39,17 +39,24 @@ struct BlockerList {
 
 enum MaterialKind : uint32_t { kind_diffuse, kind_microfacet, kind_conductor, kind_dielectric };
 
+/// Nodes of LobeAlbedo's table: coefficients a, then b.
+inline constexpr int albedo_intervals = 128;
+struct KernelAlbedo {
+  float a[albedo_intervals + 1], b[albedo_intervals + 1];
+};
+inline constexpr int albedo_floats = sizeof(KernelAlbedo) / sizeof(float);
+
 struct KernelMaterial {
-  float kd[3];
+  float kd[3];  ///< diffuse: albedo; microfacet: that of the base over 1 - the lobe's mean albedo
   float ks[3];  ///< microfacet: F0; conductor: reflectance
   float emission[3];
-  float alpha;
+  float alpha;  ///< GGX width; 0 where the lobe is treated as perfectly smooth
   float ior;
-  uint32_t kind;
-  uint32_t two_sided;  ///< emission
-  uint32_t specular;   ///< a mirror or smooth glass: no density to connect with
-  uint32_t texture;    ///< index + 1, or 0
-  float pad;
+  uint32_t kind;        ///< MaterialKind
+  uint32_t two_sided;   ///< emission
+  uint32_t albedo;      ///< microfacet: offset in floats into KernelScene::albedos
+  uint32_t texture;     ///< index + 1, or 0
+  float light_density;  ///< of a light point on this material by light sampling, per area
 };
 inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
 
@@ -63,9 +70,10 @@ struct KernelLight {
   uint32_t triangle;  ///< 1: a triangle
   uint32_t two_sided;
   float error;        ///< bound of the distance of a computed point from the exact light
+  float density;      ///< of a point on it by light sampling, per area; what shares between techniques use
   float probability;  ///< of choosing this light by power
   float cumulative;   ///< of the lights before this one
-  float pad[2];
+  float pad;
 };
 inline constexpr int light_floats = sizeof(KernelLight) / sizeof(float);
 
@@ -80,12 +88,40 @@ struct KernelCamera {
   float corner[3], dx[3], dy[3];
 };
 
+/// Kernels are compiled for sets of these; what a scene does not need is not in its kernel.
+enum KernelFeature : uint32_t {
+  feature_bvh = 1,        ///< a tree instead of a flat list
+  feature_materials = 2,  ///< other than diffuse
+  feature_detail = 4,     ///< textures and smooth normals
+};
+
+/// Triangles as the scene holds them; what a hit in the tree refers to.
+struct TriangleTable {
+  const float* positions;          ///< x, y, z of each vertex
+  const uint32_t* corners;         ///< three of each triangle
+  const uint32_t* materials;       ///< 16 bits a triangle, two in a word, the even one low
+  const float* normals;            ///< x, y, z
+  const uint32_t* normal_corners;  ///< three of each triangle, 0xffffffff: none; or null
+  const float* uvs;                ///< u, v
+  const uint32_t* uv_corners;      ///< likewise
+};
+
+/// Linear RGB, top row first.
+struct KernelTexture {
+  const float* texels;
+  int32_t width, height;
+};
+
 struct KernelScene {
-  FacetList facets;    ///< all of the scene, if `use_list`
+  FacetList facets;    ///< all of the scene, if there is no tree
   FacetList blockers;  ///< those that can lie between two points of the scene
   BlockerList blocker_fields;
-  bool use_list;
+  WideBvhView bvh;
+  TriangleTable triangles;
+  const KernelTexture* textures;
+  uint32_t texture_count;
   const KernelMaterial* materials;
+  const KernelAlbedo* albedos;
   LightList lights;
   KernelCamera camera;
   float environment[3];
@@ -100,6 +136,7 @@ struct KernelOptions {
   bool fixed_roulette;
   float survival;      ///< of fixed roulette
   uint32_t max_depth;  ///< path edges; 0: no limit
+  bool mis;            ///< emission found by BSDF sampling shares with light sampling
   int suffixes;        ///< of each tile's pixels whose paths are traced on; 0: no sharing
   int light_points;    ///< shared by a tile
   uint32_t seed;       ///< hashed; pixel_key starts from it
@@ -124,13 +161,17 @@ struct TileResult {
   uint64_t rays;
 };
 
+using RenderTiles = void (*)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                             TileResult&);
+
 /// The functions of one instruction set.
 struct KernelApi {
   const char* name;  ///< "scalar", "sse4", "avx2", "avx512"
   int width;         ///< lanes
   uint64_t scratch_bytes;
-  /// `scratch`: scratch_bytes, aligned to 64, of the calling thread.
-  void (*render_tiles)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+  /// By KernelFeature set; null where none is compiled. `scratch`: scratch_bytes, aligned to 64, of the
+  /// calling thread.
+  RenderTiles render_tiles[8];
   void (*bvh_closest)(const WideBvhView&, const RayBatch&);      ///< the nearest hit of every ray
   void (*bvh_occluded)(const WideBvhView&, const ShadowBatch&);  ///< whether each ray hits anything
 };

@@ -9,6 +9,7 @@ namespace castray::CASTRAY_ISA {
 /// density of the point with respect to area.
 struct LightPoint {
   Vec p, normal, weight;
+  Float density;  ///< of the point, per area, as materials have it
   Mask two_sided;
   Float error;
 };
@@ -35,25 +36,29 @@ CASTRAY_INLINE LightPoint sample_light(const LightList& list, Float choice, Floa
   const Vec p = fma(gather_vec(first.edge1, record), a,
                     fma(gather_vec(first.edge2, record), b, gather_vec(first.origin, record)));
   const Float inverse_density = gather(&first.area, record) / gather(&first.probability, record);
-  return {p, gather_vec(first.normal, record), gather_vec(first.emission, record) * inverse_density,
-          gather(&first.two_sided, record) == Uint(1u), gather(&first.error, record)};
+  return {p,
+          gather_vec(first.normal, record),
+          gather_vec(first.emission, record) * inverse_density,
+          gather(&first.density, record),
+          gather(&first.two_sided, record) == Uint(1u),
+          gather(&first.error, record)};
 }
 
-/// The segment from the surface point p to a light point, and the irradiance-like factor cos cos' / |d|^2
-/// (zero where either faces away).
+/// The segment from the surface point p to a light point.
 struct LightSegment {
-  Vec d;
-  Float geometry;
+  Vec towards;  ///< from p to the point, not of unit length
+  Vec end;      ///< the point moved off the light by its error, to p's side
+  Float inverse_distance;
+  Float solid_angle;  ///< cos' / |x' - x|^2; zero where the light faces away
 };
-CASTRAY_INLINE LightSegment connect_light(const LightPoint& light, const Vec& p, const Vec& normal) {
+CASTRAY_INLINE LightSegment connect_light(const LightPoint& light, const Vec& p) {
   const Vec towards = light.p - p;
   const Float facing = -dot(light.normal, towards);
   const Float cos_light = select(light.two_sided, abs(facing), max(facing, Float(0.f)));
-  const Vec d = towards + light.normal * copy_sign(light.error, facing);
-  const Float cos_surface = max(dot(normal, towards), Float(0.f));
   const Float distance2 = length_squared(towards);
-  const Float geometry = cos_surface * cos_light / (distance2 * distance2);
-  return {d, select(distance2 > Float(0.f), geometry, Float(0.f))};
+  const Float inverse = Float(1.f) / sqrt(max(distance2, Float(0x1p-100f)));
+  return {towards, fma(light.normal, copy_sign(light.error, facing), light.p), inverse,
+          cos_light * inverse * inverse * inverse};
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -1,106 +1,22 @@
 #pragma once
 
-#include "kernels/shaft.h"
-#include "kernels/stages.h"
+#include "kernels/gather.h"
 
 // Paths shared by the pixels of a tile (after Bekaert, Sbert and Halton 2002).
 //
 // From some of a tile's camera hits x_k one bounce is traced to a point y_j, where the light that leaves is
-// estimated once; every x_i of the tile then gathers from every y_j. With q_ij = cos(x_i) cos(y_j) V_ij /
-// |x_i - y_j|^2, which is pi times the density in area of x_i's cosine sampling at y_j, the balance heuristic
-// over all x_k that could have been the origin gives pixel i
+// estimated once; every x_i of the tile then gathers from every y_j. With w_ij = f cos cos' V / |x_i - y_j|^2
+// and p_kj the density per area with which x_k finds y_j (visibility included: it depends on k), the balance
+// heuristic over all x_k that could have been the origin gives pixel i
 //
-//     albedo_i L_j q_ij m / sum_k q_kj,
+//     L_j w_ij m / sum_k p_kj,
 //
-// m the number of pixels among which each origin was chosen uniformly. Light points are shared the same way,
-// without a denominator: their density does not depend on the pixel.
+// m the number of pixels among which each origin was chosen uniformly. Light points are shared the same way;
+// where a suffix ends on a light, both ways of finding that point share its emission.
 
 namespace castray::CASTRAY_ISA {
 
-/// The points of one tile that gather: entries first to first + 63 of the camera's vertices.
-struct Gatherers {
-  const Vertices& x;
-  int first;
-};
-
-/// The bounds of a tile's points; empty tiles have a box without extent at the origin.
-CASTRAY_INLINE Box bounds_of(const Gatherers& tile) {
-  const float* axes[3] = {tile.x.p.x, tile.x.p.y, tile.x.p.z};
-  Box box{};
-  Mask valid[tile_pixels / width];
-  uint32_t found = 0;
-  for (int i = 0; i < tile_pixels; i += width) {
-    valid[i / width] = length_squared(load(tile.x.normal, tile.first + i)) > Float(0.f);
-    found |= bits(valid[i / width]);
-  }
-  if (!found) return box;
-  for (int axis = 0; axis < 3; ++axis) {
-    Float low(__builtin_inff()), high(-__builtin_inff());
-    for (int i = 0; i < tile_pixels; i += width) {
-      const Float p = load(axes[axis] + tile.first + i);
-      low = select(valid[i / width], min(low, p), low);
-      high = select(valid[i / width], max(high, p), high);
-    }
-    float l = lane(low, 0), h = lane(high, 0);
-    for (int k = 1; k < width; ++k) {
-      l = lane(low, k) < l ? lane(low, k) : l;
-      h = lane(high, k) > h ? lane(high, k) : h;
-    }
-    box.center[axis] = 0.5f * (l + h);
-    box.half[axis] = 0.5f * (h - l) * (1 + 0x1p-20f) + 0x1p-24f;
-  }
-  return box;
-}
-
-/// The sum of 64 values in an order that does not depend on the width: 16 strided sums, then halves onto
-/// halves.
-CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_pixels / width]) {
-  constexpr int stride = 16 / width;
-  alignas(64) float sum[16];
-  for (int s = 0; s < stride; ++s) {
-    Float strided = value[s];
-    for (int i = s + stride; i < tile_pixels / width; i += stride) strided += value[i];
-    store(sum + s * width, strided);
-  }
-  for (int half = 8; half > 0; half /= 2)
-    for (int i = 0; i < half; ++i) sum[i] += sum[i + half];
-  return sum[0];
-}
-
-/// A point that sends light to the tile.
-struct Sender {
-  Vec p, normal;
-};
-
-/// q for all pixels of a tile; `own` is the pixel that certainly sees the sender, or -1.
-CASTRAY_INLINE void transfer(const Sender& y, const Gatherers& tile, const Shaft& shaft, int own,
-                             Float (&q)[tile_pixels / width]) {
-  for (int i = 0; i < tile_pixels; i += width) {
-    const Vec d = load(tile.x.p, tile.first + i) - y.p;
-    const Float cos_y = max(dot(y.normal, d), Float(0.f));
-    const Float cos_x = max(-dot(load(tile.x.normal, tile.first + i), d), Float(0.f));
-    const Float distance2 = max(length_squared(d), Float(0x1p-60f));
-    Float value = cos_x * cos_y / (distance2 * distance2);
-    if (shaft.count > 0) {
-      Mask hidden(false);
-      for (int b = 0; b < shaft.count; ++b) hidden = hidden | hides(shaft, b, d);
-      const Mask is_own = Uint((uint32_t)i) + lane_index() == Uint((uint32_t)own);
-      value = select(hidden & ~is_own, Float(0.f), value);
-    }
-    q[i / width] = value;
-  }
-}
-
-/// Light that the pixels of a job have gathered, before their albedo.
-struct Gathered {
-  VecArray<batch_size> sum;
-};
-
-CASTRAY_INLINE void add_scaled(Gathered& gathered, int first, const Float (&q)[tile_pixels / width],
-                               const Vec& scale) {
-  for (int i = 0; i < tile_pixels; i += width)
-    store(gathered.sum, first + i, fma(scale, q[i / width], load(gathered.sum, first + i)));
-}
+CASTRAY_INLINE uint32_t hash_once(uint32_t a, uint32_t b) { return lane(hash_combine(Uint(a), Uint(b)), 0); }
 
 CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
   const uint32_t key = hash_once(
@@ -108,135 +24,204 @@ CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
   return lane(with_epoch(Uint(key), c.job.sample), 0);
 }
 
-/// Place `item` of `count` (a power of two) in the sequence of a tile: each pass uses the next `count`
+/// Places of items of `count` (a power of two) in the sequence of a tile: each pass uses the next `count`
 /// indices, in an order of its own.
-CASTRAY_INLINE uint32_t tile_index(uint32_t key, uint64_t sample, uint32_t item, uint32_t count) {
+CASTRAY_INLINE Uint tile_index(uint32_t key, uint64_t sample, Uint item, uint32_t count) {
   const uint32_t order = hash_once(key, (uint32_t)sample);
-  uint32_t v = item ^ order;
-  v = v * ((order >> 8) | 1u);
-  v ^= (v & (count - 1)) >> 2;
-  v = v * ((order >> 16) | 1u);
-  return ((uint32_t)sample * count + ((v + (order >> 24)) & (count - 1))) & ((1u << index_bits) - 1);
+  const Uint low(count - 1);
+  Uint v = (item ^ Uint(order)) * ((order >> 8) | 1u);
+  v = (v ^ ((v & low) >> 2)) * ((order >> 16) | 1u);
+  return (((v + (order >> 24)) & low) + Uint((uint32_t)sample * count)) & ((1u << index_bits) - 1);
+}
+
+CASTRAY_INLINE Vec broadcast_lane(const Vec& v, int l) {
+  return {Float(lane(v.x, l)), Float(lane(v.y, l)), Float(lane(v.z, l))};
+}
+template <int N>
+CASTRAY_INLINE Vec broadcast_entry(const VecArray<N>& a, int i) {
+  return {Float(a.x[i]), Float(a.y[i]), Float(a.z[i])};
+}
+
+/// The pixels of a tile that one suffix stands for.
+CASTRAY_INLINE float stratum_of(const KernelOptions& options) {
+  return (float)(tile_pixels / options.suffixes);
+}
+
+/// The light points of one tile, `count` <= width of them at once.
+CASTRAY_INLINE LightPoint tile_light_points(const Context& c, uint32_t key, int first) {
+  const auto points = (uint32_t)c.options.light_points;
+  const Uint index = tile_index(key, c.job.sample, Uint((uint32_t)first) + lane_index(), points);
+  const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, 0);
+  LightPoint point = sample_light(c.scene.lights, n.u[0], n.u[1], n.u[2]);
+  const Mask back = point.two_sided & (n.u[3] < Float(0.5f));
+  const Float sides = select(point.two_sided, Float(2.f), Float(1.f));
+  point.normal = select(back, -point.normal, point.normal);
+  point.weight = point.weight * (sides * Float(1.f / (float)points));
+  point.density = point.density * Float((float)points) / sides;
+  point.p = fma(point.normal, point.error, point.p);
+  return point;
 }
 
 /// Light points shared by each tile.
-CASTRAY_INLINE void gather_light(Context& c, const Vertices& x, const Box* boxes, Shaft& shaft,
-                                 Gathered& gathered) {
+template <uint32_t features>
+CASTRAY_INLINE void gather_light(Context& c, const Vertices& x, const Box* boxes, const FarEnds& ends,
+                                 VisibilityScratch& s, Gathered& gathered) {
   if (c.scene.lights.count == 0) return;
   const int points = c.options.light_points;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const Gatherers gatherers{x, tile * tile_pixels};
+    const Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     const uint32_t key = tile_key(c, tile);
     for (int first = 0; first < points; first += width) {
-      Uint index(0u);
-      for (int l = 0; l < width; ++l)
-        index = select(lane_index() == Uint((uint32_t)l),
-                       Uint(tile_index(key, c.job.sample, (uint32_t)(first + l), (uint32_t)points)), index);
-      const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, 0);
-      LightPoint point = sample_light(c.scene.lights, n.u[0], n.u[1], n.u[2]);
-      const Mask back = point.two_sided & (n.u[3] < Float(0.5f));
-      point.normal = select(back, -point.normal, point.normal);
-      point.weight =
-          point.weight * select(point.two_sided, Float(2.f), Float(1.f)) * Float(1.f / (pi * (float)points));
-      const Vec p = fma(point.normal, point.error, point.p);
+      const LightPoint point = tile_light_points(c, key, first);
       for (int l = 0; l < width && first + l < points; ++l) {
-        const Sender y{
-            {Float(lane(p.x, l)), Float(lane(p.y, l)), Float(lane(p.z, l))},
-            {Float(lane(point.normal.x, l)), Float(lane(point.normal.y, l)), Float(lane(point.normal.z, l))}};
-        make_shaft(c.scene.blocker_fields, y.p, boxes[tile], shaft);
-        Float q[tile_pixels / width];
-        transfer(y, gatherers, shaft, -1, q);
-        add_scaled(
-            gathered, gatherers.first, q,
-            {Float(lane(point.weight.x, l)), Float(lane(point.weight.y, l)), Float(lane(point.weight.z, l))});
+        Transfer t;
+        transfer<features>(c, {broadcast_lane(point.p, l), broadcast_lane(point.normal, l), -1}, gatherers,
+                           ends, s, t);
+        const float density = lane(point.density, l);
+        const float share =
+            c.options.mis ? density / (density + ordered_sum(t.density) / stratum_of(c.options)) : 1.f;
+        add_scaled<features>(gathered, gatherers.first, t, broadcast_lane(point.weight, l) * Float(share));
       }
     }
-    c.rays += (uint64_t)(points * tile_pixels);
   }
 }
 
 /// The suffixes of a job: suffix j of tile t has slot batch_size + 64 t + j.
 struct Suffixes {
-  VecArray<batch_size> p, normal;           ///< y; no normal: there is none
-  alignas(64) uint32_t origin[batch_size];  ///< entry of the camera vertex it started from
+  VecArray<batch_size> p, normal, emission;
+  alignas(64) float light_density[batch_size];  ///< of light points at y
+  alignas(64) uint32_t landed[batch_size];      ///< 0: there is no y
+  alignas(64) uint32_t origin[batch_size];      ///< entry of the camera vertex it started from
+  VecArray<batch_size> weight;                  ///< f cos / pdf there, times the stratum
 };
 
+template <int N>
+CASTRAY_INLINE Vec gather_entries(const VecArray<N>& a, Uint i) {
+  return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
+}
+
 /// One bounce from one pixel of each stratum.
+template <uint32_t features>
 CASTRAY_INLINE void start_suffixes(const Context& c, const Vertices& x, Suffixes& suffixes, Paths& out) {
-  const uint32_t per_tile = (uint32_t)c.options.suffixes, stratum = tile_pixels / per_tile;
+  const auto per_tile = (uint32_t)c.options.suffixes;
+  const uint32_t stratum = tile_pixels / per_tile;
+  const int shift = __builtin_ctz(stratum);
+  const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   out.count = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const uint32_t key = tile_key(c, tile);
-    for (uint32_t j = 0; j < per_tile; ++j) {
-      const uint32_t choice = hash_once(hash_once(key, (uint32_t)c.job.sample), j + 0x51u);
-      const uint32_t entry =
-          (uint32_t)(tile * tile_pixels) + j * stratum + (uint32_t)(((uint64_t)choice * stratum) >> 32);
-      const int suffix = tile * tile_pixels + (int)j;
-      suffixes.normal.x[suffix] = suffixes.normal.y[suffix] = suffixes.normal.z[suffix] = 0;
-      suffixes.origin[suffix] = entry;
-      if (x.normal.x[entry] == 0 && x.normal.y[entry] == 0 && x.normal.z[entry] == 0) continue;
-      out.slot[out.count] = (uint32_t)(batch_size + suffix);
-      out.key[out.count] = key;
-      out.index[out.count] = tile_index(key, c.job.sample, j, per_tile);
-      ++out.count;
+    const uint32_t key = tile_key(c, tile), choice_key = hash_once(key, (uint32_t)c.job.sample);
+    for (uint32_t j = 0; j < per_tile; j += width) {
+      const Uint item = Uint(j) + lane_index(), suffix = Uint((uint32_t)(tile * tile_pixels)) + item;
+      const Uint in_stratum = hash_combine(Uint(choice_key), item + 0x51u) & (stratum - 1);
+      const Uint entry = Uint((uint32_t)(tile * tile_pixels)) + (item << shift) + in_stratum;
+      const Uint index = tile_index(key, c.job.sample, item, per_tile);
+      const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, direction_block(0));
+      const Vec normal = gather_entries(x.normal, entry), albedo = gather_entries(x.albedo, entry);
+      Vec wi, weight = albedo;
+      if constexpr (features & feature_materials) {
+        const Frame frame = make_frame(gather_entries(x.shading_normal, entry));
+        const Shading shading{gather_bsdf(c.scene, gather(x.material, entry), albedo), frame,
+                              to_local(frame, gather_entries(x.wo, entry)), normal};
+        const Numbers<2> choice = draw<2>(c.options.sobol, {Uint(key), index}, choice_block(0));
+        const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
+        wi = to_world(frame, s.wi);
+        weight = select(shading.consistent(wi, s.wi), s.weight, black());
+      } else {
+        wi = to_world(make_frame(normal), cosine_hemisphere(n.u[0], n.u[1]));
+      }
+      const Mask there = item < Uint(per_tile);
+      const Mask going =
+          there & (length_squared(normal) > Float(0.f)) & ~(max_component(weight) <= Float(0.f));
+      const int first = tile * tile_pixels + (int)j, k = out.count;
+      store(suffixes.origin + first, entry);
+      store(suffixes.landed + first, Uint(0u));
+      store(suffixes.weight, first, weight * Float((float)stratum));
+      compress_store(out.o, k, going, gather_entries(x.p, entry));
+      compress_store(out.d, k, going, wi);
+      compress_store(out.throughput, k, going, one);
+      compress_store(out.arrival + k, going, Float(0.f));
+      compress_store(out.eta2 + k, going, Float(1.f));
+      compress_store(out.names.slot + k, going, suffix + Uint((uint32_t)batch_size));
+      compress_store(out.names.key + k, going, Uint(key));
+      compress_store(out.names.index + k, going, index);
+      compress_store(out.names.light_u + k, going, n.u[2]);
+      compress_store(out.names.light_v + k, going, n.u[3]);
+      out.count += count(going);
     }
-  }
-  for (int i = 0; i < out.count; i += width) {
-    const Uint suffix =
-        select(first_lanes(out.count - i), load(out.slot + i) - Uint((uint32_t)batch_size), Uint(0u));
-    const Uint entry = gather(suffixes.origin, suffix);
-    const Numbers<4> n = draw<4>(c.options.sobol, load_sequence(out.key, out.index, i), direction_block(0));
-    const Vec normal{gather(x.normal.x, entry), gather(x.normal.y, entry), gather(x.normal.z, entry)};
-    store(out.o, i, Vec{gather(x.p.x, entry), gather(x.p.y, entry), gather(x.p.z, entry)});
-    store(out.d, i, cosine_direction(normal, n.u[0], n.u[1]));
-    store(out.throughput, i, Vec{Float(1.f), Float(1.f), Float(1.f)});
-    store(out.light_u + i, n.u[2]);
-    store(out.light_v + i, n.u[3]);
   }
 }
 
-/// Keeps where the suffixes have landed.
-CASTRAY_INLINE void keep_suffixes(const Vertices& y, Suffixes& suffixes) {
-  for (int i = 0; i < y.count; ++i) {
-    const uint32_t suffix = y.slot[i] - batch_size;
-    suffixes.p.x[suffix] = y.p.x[i];
-    suffixes.p.y[suffix] = y.p.y[i];
-    suffixes.p.z[suffix] = y.p.z[i];
-    suffixes.normal.x[suffix] = y.normal.x[i];
-    suffixes.normal.y[suffix] = y.normal.y[i];
-    suffixes.normal.z[suffix] = y.normal.z[i];
+template <int N>
+CASTRAY_INLINE void copy_entry(VecArray<N>& to, uint32_t i, const float* x, const float* y, const float* z,
+                               int k) {
+  to.x[i] = x[k];
+  to.y[i] = y[k];
+  to.z[i] = z[k];
+}
+
+CASTRAY_INLINE const KernelMaterial& material_of(const KernelScene& scene, uint32_t record) {
+  return scene.materials[(record & 0x7fffffffu) / material_floats];
+}
+
+/// Keeps where the suffixes have landed and what is emitted there, where light sampling shares it. Only
+/// diffuse points can be shared: what other materials reflect goes on as a plain path of the pixel it came
+/// from.
+template <uint32_t features>
+CASTRAY_INLINE void keep_suffixes(const Context& c, Vertices& y, Suffixes& suffixes) {
+  for (int k = 0; k < y.count; ++k) {
+    const uint32_t suffix = y.names.slot[k] - batch_size;
+    const KernelMaterial& material = material_of(c.scene, y.material[k]);
+    const bool shines = c.options.mis && (material.two_sided || y.material[k] >> 31);
+    const float* e = material.emission;
+    suffixes.landed[suffix] = 1;
+    copy_entry(suffixes.p, suffix, y.p.x, y.p.y, y.p.z, k);
+    copy_entry(suffixes.normal, suffix, y.normal.x, y.normal.y, y.normal.z, k);
+    suffixes.emission.x[suffix] = shines ? e[0] : 0.f;
+    suffixes.emission.y[suffix] = shines ? e[1] : 0.f;
+    suffixes.emission.z[suffix] = shines ? e[2] : 0.f;
+    suffixes.light_density[suffix] =
+        material.light_density * (float)c.options.light_points / (material.two_sided ? 2.f : 1.f);
+    if ((features & feature_materials) && material.kind != kind_diffuse) {
+      y.names.slot[k] = suffixes.origin[suffix];
+      copy_entry(y.throughput, (uint32_t)k, suffixes.weight.x, suffixes.weight.y, suffixes.weight.z,
+                 (int)suffix);
+    }
   }
 }
 
 /// Every pixel gathers from every suffix of its tile. A suffix that escaped serves the pixel it came from
 /// alone.
-CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const Box* boxes, const Suffixes& suffixes,
-                                    const Radiance& radiance, Shaft& shaft, Gathered& gathered) {
-  const float stratum = (float)(tile_pixels / c.options.suffixes);
+template <uint32_t features>
+CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const Box* boxes, const FarEnds& ends,
+                                    const Suffixes& suffixes, const Radiance& radiance, VisibilityScratch& s,
+                                    Gathered& gathered) {
+  const float stratum = stratum_of(c.options);
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const Gatherers gatherers{x, tile * tile_pixels};
+    const Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     for (int j = 0; j < c.options.suffixes; ++j) {
-      const int suffix = tile * tile_pixels + j, slot = batch_size + suffix;
-      const int origin = (int)suffixes.origin[suffix];
-      const float r = radiance.x[slot], g = radiance.y[slot], b = radiance.z[slot];
-      if (!(r > 0 || g > 0 || b > 0)) continue;
-      const Sender y{{Float(suffixes.p.x[suffix]), Float(suffixes.p.y[suffix]), Float(suffixes.p.z[suffix])},
-                     {Float(suffixes.normal.x[suffix]), Float(suffixes.normal.y[suffix]),
-                      Float(suffixes.normal.z[suffix])}};
-      if (none(length_squared(y.normal) > Float(0.f))) {
-        gathered.sum.x[origin] += r * stratum;
-        gathered.sum.y[origin] += g * stratum;
-        gathered.sum.z[origin] += b * stratum;
+      const int suffix = tile * tile_pixels + j, slot = batch_size + suffix,
+                origin = (int)suffixes.origin[suffix];
+      const Vec reflected{Float(radiance.x[slot]), Float(radiance.y[slot]), Float(radiance.z[slot])};
+      if (!suffixes.landed[suffix]) {
+        if (none(max_component(reflected) > Float(0.f))) continue;
+        const bool weighted = features & feature_materials;
+        gathered.sum.x[origin] += radiance.x[slot] * (weighted ? suffixes.weight.x[suffix] : stratum);
+        gathered.sum.y[origin] += radiance.y[slot] * (weighted ? suffixes.weight.y[suffix] : stratum);
+        gathered.sum.z[origin] += radiance.z[slot] * (weighted ? suffixes.weight.z[suffix] : stratum);
         continue;
       }
-      make_shaft(c.scene.blocker_fields, y.p, boxes[tile], shaft);
-      Float q[tile_pixels / width];
-      transfer(y, gatherers, shaft, origin - gatherers.first, q);
-      const float total = ordered_sum(q);
-      if (!(total > 0)) continue;
-      const float scale = stratum / total;
-      add_scaled(gathered, gatherers.first, q, {Float(r * scale), Float(g * scale), Float(b * scale)});
-      c.rays += tile_pixels;
+      const Vec emitted = broadcast_entry(suffixes.emission, suffix);
+      if (all(max_component(reflected + emitted) <= Float(0.f))) continue;
+      Transfer t;
+      transfer<features>(c,
+                         {broadcast_entry(suffixes.p, suffix), broadcast_entry(suffixes.normal, suffix),
+                          origin - gatherers.first},
+                         gatherers, ends, s, t);
+      const float density = ordered_sum(t.density) / stratum;
+      if (!(density > 0)) continue;
+      const Vec sum = fma(emitted, Float(1.f / (density + suffixes.light_density[suffix])),
+                          reflected * Float(1.f / density));
+      add_scaled<features>(gathered, gatherers.first, t, sum);
     }
   }
 }

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "kernels/bsdf.h"
+#include "kernels/detail.h"
+#include "kernels/geometry.h"
 #include "kernels/lights.h"
-#include "kernels/list.h"
-#include "kernels/wave.h"
 
 // The stages that a batch of paths goes through, each from arrays to arrays:
 //
@@ -12,20 +13,9 @@
 
 namespace castray::CASTRAY_ISA {
 
-inline constexpr float pi = 3.14159265358979f;
-
 /// The random numbers' block for a path vertex; the same as PathBlocks of core/sequences.h.
 constexpr uint32_t direction_block(uint32_t vertex) { return 1 + 2 * vertex; }
 constexpr uint32_t choice_block(uint32_t vertex) { return 2 + 2 * vertex; }
-
-struct Context {
-  const KernelScene& scene;
-  const KernelOptions& options;
-  const TileJob& job;
-  uint64_t rays = 0;
-};
-
-CASTRAY_INLINE uint32_t hash_once(uint32_t a, uint32_t b) { return lane(hash_combine(Uint(a), Uint(b)), 0); }
 
 /// The key's part that stands for the epoch of the sample index (see sample_block).
 CASTRAY_INLINE Uint with_epoch(Uint key, uint64_t sample) {
@@ -49,147 +39,213 @@ CASTRAY_INLINE void camera_rays(const Context& c, Paths& paths) {
     store(paths.o, i, broadcast(camera.position));
     store(paths.d, i, fma(broadcast(camera.dx), px, fma(broadcast(camera.dy), py, broadcast(camera.corner))));
     store(paths.throughput, i, Vec{Float(1.f), Float(1.f), Float(1.f)});
-    store(paths.light_u + i, n.u[2]);
-    store(paths.light_v + i, n.u[3]);
-    store(paths.slot + i, entry);
-    store(paths.key + i, key);
-    store(paths.index + i, Uint(index));
+    store(paths.arrival + i, Float(counts_all));
+    store(paths.eta2 + i, Float(1.f));
+    store(paths.names.light_u + i, n.u[2]);
+    store(paths.names.light_v + i, n.u[3]);
+    store(paths.names.slot + i, entry);
+    store(paths.names.key + i, key);
+    store(paths.names.index + i, Uint(index));
   }
 }
 
-CASTRAY_INLINE void closest(Context& c, const Paths& paths, bool from_camera, Hits& hits) {
-  const Float slack(from_camera ? c.scene.camera_slack : c.scene.slack);
-  for (int i = 0; i < paths.count; i += width) {
-    const ListHit hit = list_closest(c.scene.facets, load(paths.o, i), load(paths.d, i), slack);
-    store(hits.t + i, hit.t);
-    store(hits.primitive + i, hit.facet);
-  }
-  c.rays += (uint64_t)paths.count;
-}
-
-/// What a path that arrives from the camera, or from a perfectly specular bounce, sees of the surface's own
-/// light.
-CASTRAY_INLINE Vec seen_emission(const KernelMaterial& first, Uint material, Mask front) {
+/// The part of a surface's own light that a ray counts (balance heuristic with light sampling).
+CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, Mask front, Float arrival,
+                                  Float distance, Float cosine) {
+  const KernelMaterial& first = *scene.materials;
   const Mask shines = front | (gather(&first.two_sided, material) == Uint(1u));
-  const Vec dark{Float(0.f), Float(0.f), Float(0.f)};
-  return select(shines, gather_vec(first.emission, material), dark);
+  const Float light_pdf = gather(&first.light_density, material) * distance * distance / abs(cosine);
+  const Float share =
+      select(arrival >= Float(counts_all), Float(1.f), arrival / max(arrival + light_pdf, Float(0x1p-100f)));
+  return select(shines, gather_vec(first.emission, material) * share, black());
 }
 
-/// The surface at each hit. Paths that miss collect the environment and end; `see_emission`: light sources are added.
-/// With `keep_misses` every path keeps its place, and a miss is a black vertex without a normal.
-template <bool keep_misses>
+/// The surface at each hit. Paths that miss collect the environment and end. `see_emission`: some rays count
+/// it. With `keep_misses` every path keeps its place, and a miss is a black vertex without a normal.
+template <uint32_t features, bool keep_misses>
 CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
                              Vertices& out, Radiance& radiance) {
-  const Facet& facet = *c.scene.facets.facets;
-  const KernelMaterial& materials = *c.scene.materials;
+  const KernelScene& scene = c.scene;
   out.count = 0;
   for (int i = 0; i < paths.count; i += width) {
     const Mask active = first_lanes(paths.count - i);
-    const Uint primitive = load(hits.primitive + i);
-    const Mask hit = active & ~(primitive == Uint(no_hit));
-    const Uint record = select(hit, primitive, Uint(0u)) * uint32_t{facet_floats};
-    const Vec o = load(paths.o, i), d = load(paths.d, i);
-    const Vec throughput = load(paths.throughput, i);
-    const Vec normal = gather_vec(facet.normal, record);
-    const Vec on_ray = fma(d, load(hits.t + i), o);
-    const Float above = dot(normal, on_ray) - gather(&facet.offset, record);
-    const Float towards = dot(normal, d);
-    const Vec facing{flip_by_sign(normal.x, -towards), flip_by_sign(normal.y, -towards),
-                     flip_by_sign(normal.z, -towards)};
-    const Vec p = fma(facing, gather(&facet.error, record), fma(normal, -above, on_ray));
-    const Uint material = gather(&facet.material, record) * uint32_t{material_floats};
-    if (see_emission)
-      radiance.add(paths.slot + i, hit,
-                   throughput * seen_emission(materials, material, towards < Float(0.f)));
-    radiance.add(paths.slot + i, active & ~hit, throughput * broadcast(c.scene.environment));
+    const Uint found = load(hits.primitive + i);
+    const Mask hit = active & ~(found == Uint(no_hit));
+    const Uint primitive = select(hit, found, Uint(0u));
+    const Vec o = load(paths.o, i), d = load(paths.d, i), throughput = load(paths.throughput, i);
+    const HitPoint x = hit_point<features>(scene, o, d, hits, i, primitive);
+    const Float towards = dot(x.normal, d);
+    const Mask front = towards < Float(0.f);
+    const Vec facing = select(front, x.normal, -x.normal);
+    Vec albedo = gather_vec(scene.materials->kd, x.material);
+    if (see_emission) {
+      const Float arrival = load(paths.arrival + i);
+      const Vec emission = found_emission(scene, x.material, front, arrival, load(hits.t + i), towards);
+      radiance.add(paths.names.slot + i, hit & (arrival > Float(0.f)), throughput * emission);
+    }
+    radiance.add(paths.names.slot + i, active & ~hit, throughput * broadcast(scene.environment));
     const Mask kept = keep_misses ? active : hit;
-    const Vec none{Float(0.f), Float(0.f), Float(0.f)};
-    const Vec albedo = gather_vec(materials.kd, material);
     const int n = out.count;
-    compress_store(out.p, n, kept, p);
-    compress_store(out.normal, n, kept, keep_misses ? select(hit, facing, none) : facing);
-    compress_store(out.albedo, n, kept, keep_misses ? select(hit, albedo, none) : albedo);
+    if constexpr (features & feature_materials) {
+      const Vec to_viewer = -normalize(d);
+      Vec shading_normal = facing;
+      if constexpr (features & feature_detail) {
+        const Float b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
+        shading_normal = smooth_normal(scene.triangles, primitive, b1, b2, facing, to_viewer);
+        albedo = albedo * texture_tint(scene, x.material, primitive, b1, b2);
+      }
+      compress_store(out.wo, n, kept, to_viewer);
+      compress_store(out.shading_normal, n, kept, shading_normal);
+      compress_store(out.error + n, kept, x.error);
+      compress_store(out.eta2 + n, kept, load(paths.eta2 + i));
+    }
+    compress_store(out.p, n, kept, fma(facing, x.error, x.p));
+    compress_store(out.normal, n, kept, keep_misses ? select(hit, facing, black()) : facing);
+    compress_store(out.albedo, n, kept, keep_misses ? select(hit, albedo, black()) : albedo);
     compress_store(out.throughput, n, kept, throughput);
-    compress_store(out.light_u + n, kept, load(paths.light_u + i));
-    compress_store(out.light_v + n, kept, load(paths.light_v + i));
-    compress_store(out.slot + n, kept, load(paths.slot + i));
-    compress_store(out.key + n, kept, load(paths.key + i));
-    compress_store(out.index + n, kept, load(paths.index + i));
+    compress_store(out.material + n, kept, x.material | select(front, Uint(0x80000000u), Uint(0u)));
+    compress_names(out.names, n, kept, paths.names, i);
     out.count += count(kept);
   }
 }
 
+/// The BSDF at vertices, the frame it lives in, and the viewer's direction there.
+struct Shading {
+  Bsdf bsdf;
+  Frame frame;
+  Vec wo, normal;
+
+  /// Whether a direction is on the same side of the real surface as of the shading normal's: smooth normals
+  /// must not let light through an opaque surface.
+  CASTRAY_INLINE Mask consistent(Vec wi, Vec local) const {
+    const Mask above = dot(wi, normal) > Float(0.f), local_above = local.z > Float(0.f);
+    return (above & local_above) | (~above & ~local_above);
+  }
+};
+
+CASTRAY_INLINE Bsdf gather_bsdf(const KernelScene& scene, Uint material, Vec kd) {
+  const KernelMaterial& first = *scene.materials;
+  const Uint record = material & 0x7fffffffu;
+  const Mask front = (material >> 31) == Uint(1u);
+  const Float ior = gather(&first.ior, record);
+  return {gather(&first.kind, record),
+          kd,
+          gather_vec(first.ks, record),
+          gather(&first.alpha, record),
+          select(front, ior, Float(1.f) / ior),
+          gather(&first.albedo, record),
+          scene.albedos};
+}
+
+CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, int i) {
+  const Frame frame = make_frame(load(v.shading_normal, i));
+  return {gather_bsdf(scene, load(v.material + i), load(v.albedo, i)), frame, to_local(frame, load(v.wo, i)),
+          load(v.normal, i)};
+}
+
+/// Where a ray in direction `wi` leaves a vertex: a point on wi's side.
+CASTRAY_INLINE Vec leave(const Vertices& v, int i, Vec wi) {
+  const Vec p = load(v.p, i), normal = load(v.normal, i);
+  const Float across = select(dot(wi, normal) < Float(0.f), Float(-2.f) * load(v.error + i), Float(0.f));
+  return fma(normal, across, p);
+}
+
 /// One light point for each vertex.
+template <uint32_t features>
 CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t vertex, ShadowRays& out) {
   out.count = 0;
-  if (c.scene.lights.count == 0) return;
+  const LightList& lights = c.scene.lights;
+  if (lights.count == 0) return;
   for (int i = 0; i < vertices.count; i += width) {
-    const Sequence sequence = load_sequence(vertices.key, vertices.index, i);
     const Float choice =
-        c.scene.lights.count > 1 ? draw<3>(c.options.sobol, sequence, choice_block(vertex)).u[2] : Float(0.f);
+        lights.count > 1 ? draw<3>(c.options.sobol, sequence_of(vertices.names, i), choice_block(vertex)).u[2]
+                         : Float(0.f);
     const LightPoint point =
-        sample_light(c.scene.lights, choice, load(vertices.light_u + i), load(vertices.light_v + i));
-    const Vec p = load(vertices.p, i);
-    const LightSegment segment = connect_light(point, p, load(vertices.normal, i));
-    const Mask lit = first_lanes(vertices.count - i) & (segment.geometry > Float(0.f));
-    const Vec reflected =
-        load(vertices.throughput, i) * load(vertices.albedo, i) * (segment.geometry * Float(1.f / pi));
+        sample_light(lights, choice, load(vertices.names.light_u + i), load(vertices.names.light_v + i));
+    const LightSegment segment = connect_light(point, load(vertices.p, i));
+    const Vec wi = segment.towards * segment.inverse_distance;
+    Vec o = load(vertices.p, i), f_cos;
+    Float pdf(0.f);
+    if constexpr (features & feature_materials) {
+      const Shading shading = shading_of(c.scene, vertices, i);
+      const Vec local = to_local(shading.frame, wi);
+      const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
+      f_cos = select(shading.consistent(wi, local), value.f_cos, black());
+      pdf = value.pdf;
+      o = leave(vertices, i, wi);
+    } else {
+      pdf = max(dot(load(vertices.normal, i), wi), Float(0.f)) * Float(1.f / pi);
+      f_cos = load(vertices.albedo, i) * pdf;
+    }
+    const Float share = c.options.mis
+                            ? point.density / max(point.density + pdf * segment.solid_angle, Float(0x1p-100f))
+                            : Float(1.f);
+    const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
+    const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;
-    compress_store(out.o, n, lit, p);
-    compress_store(out.d, n, lit, segment.d);
-    compress_store(out.radiance, n, lit, reflected * point.weight);
-    compress_store(out.slot + n, lit, load(vertices.slot + i));
+    compress_store(out.o, n, lit, o);
+    compress_store(out.d, n, lit, segment.end - o);
+    compress_store(out.radiance, n, lit, radiance);
+    compress_store(out.slot + n, lit, load(vertices.names.slot + i));
     out.count += count(lit);
   }
 }
 
-CASTRAY_INLINE void add_unblocked(Context& c, const ShadowRays& rays, Radiance& radiance) {
-  for (int i = 0; i < rays.count; i += width) {
-    const Mask blocked =
-        list_occluded(c.scene.blockers, load(rays.o, i), load(rays.d, i), Float(c.scene.slack));
-    radiance.add(rays.slot + i, first_lanes(rays.count - i) & ~blocked, load(rays.radiance, i));
-  }
-  c.rays += (uint64_t)rays.count;
-}
-
-/// Survival probability of a path about to leave `vertex`.
+/// Survival probability of a path about to leave `vertex`; capped, even where it is fixed, so that every path
+/// ends.
 CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uint32_t first_roulette,
-                              Vec throughput) {
-  if (options.fixed_roulette) return Float(options.survival);
-  return vertex < first_roulette ? Float(1.f) : min(max_component(throughput), Float(0.95f));
-}
-
-/// A direction about the normal with density cos / pi (Malley's method).
-CASTRAY_INLINE Vec cosine_direction(const Vec& normal, Float u, Float v) {
-  const SinCos turn = sincos_turn(v);
-  const Float r = sqrt(u);
-  return to_world(make_frame(normal), {r * turn.cos, r * turn.sin, sqrt(max(Float(1.f) - u, Float(0.f)))});
+                              Float brightest) {
+  constexpr float highest = 0.95f;
+  if (options.fixed_roulette)
+    return Float(vertex < 1000 || options.survival < highest ? options.survival : highest);
+  return vertex < first_roulette ? Float(1.f) : min(brightest, Float(highest));
 }
 
 /// The next ray of each path that survives the roulette.
+template <uint32_t features>
 CASTRAY_INLINE void scatter(const Context& c, const Vertices& vertices, uint32_t vertex,
                             uint32_t first_roulette, Paths& out) {
   out.count = 0;
   const bool roulette = c.options.fixed_roulette || vertex >= first_roulette;
   for (int i = 0; i < vertices.count; i += width) {
-    const Sequence sequence = load_sequence(vertices.key, vertices.index, i);
+    const Sequence sequence = sequence_of(vertices.names, i);
     const Numbers<4> n = draw<4>(c.options.sobol, sequence, direction_block(vertex));
-    Vec throughput = load(vertices.throughput, i) * load(vertices.albedo, i);
-    Mask alive = first_lanes(vertices.count - i) & (max_component(throughput) > Float(0.f));
+    Vec throughput = load(vertices.throughput, i), o = load(vertices.p, i), wi;
+    Float arrival(0.f), eta2(1.f), brightest;
+    Numbers<2> choice{{Float(0.f), Float(0.f)}};
+    if (roulette || (features & feature_materials))
+      choice = draw<2>(c.options.sobol, sequence, choice_block(vertex));
+    if constexpr (features & feature_materials) {
+      const Shading shading = shading_of(c.scene, vertices, i);
+      const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
+      wi = to_world(shading.frame, s.wi);
+      throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
+      arrival = select(s.specular, Float(counts_all), c.options.mis ? s.pdf : Float(0.f));
+      eta2 = load(vertices.eta2 + i) * s.eta2;
+      brightest = max_component(throughput) * eta2;
+      o = leave(vertices, i, wi);
+    } else {
+      const Vec local = cosine_hemisphere(n.u[0], n.u[1]);
+      wi = to_world(make_frame(load(vertices.normal, i)), local);
+      throughput = throughput * load(vertices.albedo, i);
+      if (c.options.mis) arrival = local.z * Float(1.f / pi);
+      brightest = max_component(throughput);
+    }
+    Mask alive = first_lanes(vertices.count - i) & ~(brightest <= Float(0.f));
     if (roulette) {
-      const Float p = survival(c.options, vertex, first_roulette, throughput);
-      alive = alive & (draw<1>(c.options.sobol, sequence, choice_block(vertex)).u[0] < p);
+      const Float p = survival(c.options, vertex, first_roulette, brightest);
+      alive = alive & (choice.u[0] < p);
       throughput = throughput * (Float(1.f) / p);
     }
     const int k = out.count;
-    compress_store(out.o, k, alive, load(vertices.p, i));
-    compress_store(out.d, k, alive, cosine_direction(load(vertices.normal, i), n.u[0], n.u[1]));
+    compress_store(out.o, k, alive, o);
+    compress_store(out.d, k, alive, wi);
     compress_store(out.throughput, k, alive, throughput);
-    compress_store(out.light_u + k, alive, n.u[2]);
-    compress_store(out.light_v + k, alive, n.u[3]);
-    compress_store(out.slot + k, alive, load(vertices.slot + i));
-    compress_store(out.key + k, alive, sequence.key);
-    compress_store(out.index + k, alive, sequence.index);
+    compress_store(out.arrival + k, alive, arrival);
+    compress_store(out.eta2 + k, alive, eta2);
+    compress_names(out.names, k, alive, vertices.names, i);
+    compress_store(out.names.light_u + k, alive, n.u[2]);
+    compress_store(out.names.light_v + k, alive, n.u[3]);
     out.count += count(alive);
   }
 }

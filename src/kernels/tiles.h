@@ -5,7 +5,14 @@
 
 namespace castray::CASTRAY_ISA {
 
-uint64_t scratch_bytes();
-void render_tiles(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+// One for each set of features that is compiled; the names say which.
+void render_tiles_list_diffuse(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                               TileResult&);
+void render_tiles_list(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+void render_tiles_bvh_diffuse(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                              TileResult&);
+void render_tiles_bvh(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+void render_tiles_bvh_detail(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                             TileResult&);
 
 }  // namespace castray::CASTRAY_ISA

@@ -21,6 +21,10 @@ CASTRAY_INLINE Float length_squared(Vec a) { return dot(a, a); }
 CASTRAY_INLINE Vec fma(Vec b, Float s, Vec a) {
   return {fma(b.x, s, a.x), fma(b.y, s, a.y), fma(b.z, s, a.z)};
 }
+/// a * b + c, component by component
+CASTRAY_INLINE Vec fma_vec(Vec a, Vec b, Vec c) {
+  return {fma(a.x, b.x, c.x), fma(a.y, b.y, c.y), fma(a.z, b.z, c.z)};
+}
 CASTRAY_INLINE Vec select(Mask m, Vec a, Vec b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }

@@ -12,42 +12,66 @@ namespace castray::CASTRAY_ISA {
 
 inline constexpr int capacity = batch_size + 16;  ///< compressed stores write a full vector
 
-template <int N>
-CASTRAY_INLINE Sequence load_sequence(const uint32_t (&key)[N], const uint32_t (&index)[N], int i) {
-  return {load(key + i), load(index + i)};
+using FloatArray = float[capacity];
+using UintArray = uint32_t[capacity];
+
+/// Who a path is: where its radiance is added, which random numbers it draws, and where on a light its next
+/// vertex looks.
+struct PathNames {
+  alignas(64) UintArray slot, key, index;
+  alignas(64) FloatArray light_u, light_v;
+};
+
+CASTRAY_INLINE Sequence sequence_of(const PathNames& names, int i) {
+  return {load(names.key + i), load(names.index + i)};
 }
 
-/// Rays under way and what they carry.
+/// Copies the names of entries i to i + width - 1 of `from`, those of `m`, to the entries of `to` from n on.
+CASTRAY_INLINE void compress_names(PathNames& to, int n, Mask m, const PathNames& from, int i) {
+  compress_store(to.slot + n, m, load(from.slot + i));
+  compress_store(to.key + n, m, load(from.key + i));
+  compress_store(to.index + n, m, load(from.index + i));
+  compress_store(to.light_u + n, m, load(from.light_u + i));
+  compress_store(to.light_v + n, m, load(from.light_v + i));
+}
+
+/// How much of the emission that a ray finds it counts: all; or, where light sampling looks for it too, the
+/// share that goes with the density of the ray's direction; 0 counts nothing.
+inline constexpr float counts_all = 0x1p126f;
+
+/// Rays under way, directions of unit length but the camera's, and what they carry.
 struct Paths {
   int count = 0;
   VecArray<capacity> o, d, throughput;
-  alignas(64) float light_u[capacity],
-      light_v[capacity];                ///< numbers that place the light point of the next vertex
-  alignas(64) uint32_t slot[capacity];  ///< where their radiance is added
-  alignas(64) uint32_t key[capacity], index[capacity];
+  alignas(64) FloatArray arrival;  ///< density of the direction, or counts_all, or 0
+  alignas(64) FloatArray eta2;     ///< what refraction has scaled the throughput by, inverted
+  PathNames names;
 };
 
-/// What closest-hit search found for each path: distance and facet or triangle.
+/// What closest-hit search found for each path: distance, facet or triangle, and barycentrics of the latter.
 struct Hits {
-  alignas(64) float t[capacity];
-  alignas(64) uint32_t primitive[capacity];
+  alignas(64) FloatArray t, b1, b2;
+  alignas(64) UintArray primitive;
 };
 
-/// Points on surfaces, ready to be lit and to scatter. `normal` is on the side of the arriving ray; `p` is
-/// already moved to that side by the point's error bound.
+/// Points on surfaces, ready to be lit and to scatter. `normal` is the geometric one on the side of the
+/// arriving ray; `p` is already moved to that side by `error`, the bound of its distance from the surface.
 struct Vertices {
   int count = 0;
   VecArray<capacity> p, normal, albedo, throughput;
-  alignas(64) float light_u[capacity], light_v[capacity];
-  alignas(64) uint32_t slot[capacity];
-  alignas(64) uint32_t key[capacity], index[capacity];
+  alignas(64) UintArray material;  ///< offset of its record, in floats; the top bit: seen from the front
+  PathNames names;
+  // Only where there are other materials than diffuse ones:
+  VecArray<capacity> wo, shading_normal;
+  alignas(64) FloatArray error, eta2;
 };
 
 /// Segments o + t d, 0 < t < 1, and the radiance that arrives if nothing is between.
 struct ShadowRays {
   int count = 0;
   VecArray<capacity> o, d, radiance;
-  alignas(64) uint32_t slot[capacity];
+  alignas(64) UintArray slot;
+  alignas(64) uint8_t blocked[capacity];
 };
 
 /// Sums of radiance; slots are those of paths: first the pixels, then the shared suffixes.
@@ -67,6 +91,14 @@ struct Radiance {
       z[slot[l]] += b[l];
     }
   }
+};
+
+/// The scene, what is asked, and the running count of rays, as all stages get them.
+struct Context {
+  const KernelScene& scene;
+  const KernelOptions& options;
+  const TileJob& job;
+  uint64_t rays = 0;
 };
 
 }  // namespace castray::CASTRAY_ISA

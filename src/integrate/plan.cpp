@@ -1,0 +1,60 @@
+#include "integrate/plan.h"
+
+#include "integrate/estimator.h"
+#include "kernels/api.h"
+#include "scene/needs.h"
+
+namespace castray {
+
+namespace {
+
+/// Up to so many triangles a flat list is faster than a tree.
+constexpr std::size_t longest_list = 64;
+
+bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
+  if (needs.textures || needs.smooth_normals) return false;  // facets have no barycentrics
+  return options.accel == AccelKind::list ||
+         (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
+}
+
+std::string kernel_name(const Plan& plan) {
+  std::string name = plan.list ? "list" : "BVH";
+  name += plan.features & feature_detail      ? ", all materials, textures, smooth normals"
+          : plan.features & feature_materials ? ", all materials"
+                                              : ", diffuse";
+  name += plan.suffixes > 0 ? ", " + std::to_string(plan.suffixes) + " paths shared by 8x8 pixels"
+                            : ", plain paths";
+  return name + (plan.mis ? ", MIS" : "");
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const RenderOptions& options) {
+  const SceneNeeds needs = needs_of(scene);
+  Plan plan;
+  plan.list = use_list(needs, options);
+  const bool detail = needs.textures || needs.smooth_normals || (options.generic && !plan.list);
+  const bool materials = detail || needs.conductor || needs.microfacet || needs.dielectric || options.generic;
+  plan.features =
+      (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
+  plan.mis = uses_mis(options.mis, needs.emitting_share);
+  plan.suffixes = options.reuse.automatic ? 32 : options.reuse.suffixes;
+  plan.light_points = 8;
+  plan.build = options.build == BuildQuality::automatic ? BuildQuality::fast : options.build;
+  plan.kernel = kernel_name(plan);
+  const auto skip = [&plan](bool needed, const char* what) {
+    if (!needed) plan.skipped.emplace_back(what);
+  };
+  skip(!plan.list, "tree");
+  skip(detail || needs.textures, "textures");
+  skip(detail || needs.smooth_normals, "smooth normals");
+  skip(materials || needs.microfacet, "microfacet");
+  skip(materials || needs.conductor, "conductor");
+  skip(materials || needs.dielectric, "dielectric");
+  skip(needs.environment, "environment");
+  skip(needs.lights > 1, "choice among lights");
+  skip(plan.mis, "multiple importance sampling");
+  return plan;
+}
+
+}  // namespace castray

@@ -1,0 +1,176 @@
+#pragma once
+
+#include "kernels/shaft.h"
+#include "kernels/stages.h"
+
+// What the pixels of a tile get from one point that sends light to them.
+
+namespace castray::CASTRAY_ISA {
+
+inline constexpr int tile_vectors = tile_pixels / width;
+
+/// The points of one tile that gather: entries first to first + 63 of the camera's vertices.
+struct Gatherers {
+  const Vertices& x;
+  int first;
+  Box box;
+};
+
+/// A point that sends light to the tile, on the side of its normal. `own`: the pixel of the tile that
+/// certainly sees it, or -1.
+struct Sender {
+  Vec p, normal;
+  int own;
+};
+
+/// For each pixel of a tile: f cos cos' V / |x - y|^2, and the density, per area at y, of x's BSDF sampling
+/// finding y. Where all materials are diffuse, `weight` is not filled: it is the density times the albedo.
+struct Transfer {
+  Float density[tile_vectors];
+  Vec weight[tile_vectors];
+};
+
+/// The sum of 64 values in an order that does not depend on the width: 16 strided sums, then halves onto
+/// halves.
+CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
+  constexpr int stride = 16 / width;
+  alignas(64) float sum[16];
+  for (int s = 0; s < stride; ++s) {
+    Float strided = value[s];
+    for (int i = s + stride; i < tile_vectors; i += stride) strided += value[i];
+    store(sum + s * width, strided);
+  }
+  for (int half = 8; half > 0; half /= 2)
+    for (int i = 0; i < half; ++i) sum[i] += sum[i + half];
+  return sum[0];
+}
+
+/// The bounds of a tile's points; empty tiles have a box without extent at the origin.
+CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
+  const float* axes[3] = {x.p.x, x.p.y, x.p.z};
+  Box box{};
+  Mask valid[tile_vectors];
+  uint32_t found = 0;
+  for (int i = 0; i < tile_vectors; ++i) {
+    valid[i] = length_squared(load(x.normal, first + i * width)) > Float(0.f);
+    found |= bits(valid[i]);
+  }
+  if (!found) return box;
+  for (int axis = 0; axis < 3; ++axis) {
+    Float low(__builtin_inff()), high(-__builtin_inff());
+    for (int i = 0; i < tile_vectors; ++i) {
+      const Float p = load(axes[axis] + first + i * width);
+      low = select(valid[i], min(low, p), low);
+      high = select(valid[i], max(high, p), high);
+    }
+    float l = lane(low, 0), h = lane(high, 0);
+    for (int k = 1; k < width; ++k) {
+      l = lane(low, k) < l ? lane(low, k) : l;
+      h = lane(high, k) > h ? lane(high, k) : h;
+    }
+    box.center[axis] = 0.5f * (l + h);
+    box.half[axis] = 0.5f * (h - l) * (1 + 0x1p-20f) + 0x1p-24f;
+  }
+  return box;
+}
+
+/// Room for visibility tests.
+struct VisibilityScratch {
+  Shaft shaft;
+  VecArray<capacity> o, d;
+  alignas(64) UintArray pixel;
+  alignas(64) uint8_t blocked[capacity];
+};
+
+CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
+  t.density[i] = select(hidden, Float(0.f), t.density[i]);
+  if (weights) t.weight[i] = select(hidden, black(), t.weight[i]);
+}
+
+/// Takes out what is hidden from the sender.
+template <uint32_t features>
+CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
+                                 VisibilityScratch& s, Transfer& t) {
+  constexpr bool weights = features & feature_materials;
+  if constexpr (features & feature_bvh) {
+    int n = 0;
+    for (int i = 0; i < tile_vectors; ++i) {
+      const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
+      const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
+      compress_store(s.o, n, open, y.p);
+      compress_store(s.d, n, open, load(tile.x.p, tile.first + i * width) - y.p);
+      compress_store(s.pixel + n, open, pixel);
+      n += count(open);
+    }
+    bvh_occluded(c.scene.bvh, {s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, ends.one, s.blocked, (uint32_t)n});
+    uint64_t hidden = 0;
+    for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
+    for (int i = 0; i < tile_vectors; ++i)
+      hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
+  } else {
+    make_shaft(c.scene.blocker_fields, y.p, tile.box, s.shaft);
+    if (s.shaft.count == 0) return;
+    for (int i = 0; i < tile_vectors; ++i) {
+      const Vec d = load(tile.x.p, tile.first + i * width) - y.p;
+      Mask hidden(false);
+      for (int b = 0; b < s.shaft.count; ++b) hidden = hidden | hides(s.shaft, b, d);
+      const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
+      hide(t, i, hidden & ~own, weights);
+    }
+  }
+}
+
+/// Everything of Transfer but visibility.
+template <uint32_t features>
+CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const Gatherers& tile,
+                                        Transfer& t) {
+  for (int i = 0; i < tile_vectors; ++i) {
+    const int entry = tile.first + i * width;
+    const Vec d = load(tile.x.p, entry) - y.p, normal = load(tile.x.normal, entry);
+    const Float distance2 = max(length_squared(d), Float(0x1p-60f));
+    const Float cos_y = max(dot(y.normal, d), Float(0.f)), cos_x = max(-dot(normal, d), Float(0.f));
+    t.density[i] = cos_x * cos_y / (distance2 * distance2) * Float(1.f / pi);
+    if constexpr (features & feature_materials) {
+      t.weight[i] = load(tile.x.albedo, entry) * t.density[i];
+      const Uint kind = gather(&c.scene.materials->kind, load(tile.x.material + entry) & 0x7fffffffu);
+      const Mask smooth_or_rough = ~(kind == Uint(kind_diffuse)) & (length_squared(normal) > Float(0.f));
+      bool other = any(smooth_or_rough);
+      if constexpr (features & feature_detail) other = true;
+      if (!other) continue;
+      const Shading shading = shading_of(c.scene, tile.x, entry);
+      const Float inverse = Float(1.f) / sqrt(distance2);
+      const Vec wi = d * -inverse, local = to_local(shading.frame, wi);
+      const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
+      const Float geometry = cos_y * inverse * inverse * inverse;
+      const Mask valid = shading.consistent(wi, local) & (length_squared(normal) > Float(0.f));
+      const Mask lanes = (features & feature_detail) ? Mask(true) : smooth_or_rough;
+      t.density[i] = select(lanes, select(valid, value.pdf * geometry, Float(0.f)), t.density[i]);
+      t.weight[i] = select(lanes, select(valid, value.f_cos * geometry, black()), t.weight[i]);
+    }
+  }
+}
+
+template <uint32_t features>
+CASTRAY_INLINE void transfer(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
+                             VisibilityScratch& s, Transfer& t) {
+  unoccluded_transfer<features>(c, y, tile, t);
+  hide_blocked<features>(c, y, tile, ends, s, t);
+  c.rays += tile_pixels;
+}
+
+/// Light that the pixels of a job have gathered; before their albedo, where all materials are diffuse.
+struct Gathered {
+  VecArray<batch_size> sum;
+};
+
+template <uint32_t features>
+CASTRAY_INLINE void add_scaled(Gathered& gathered, int first, const Transfer& t, const Vec& radiance) {
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec before = load(gathered.sum, first + i * width);
+    const Vec more = (features & feature_materials) ? fma_vec(radiance, t.weight[i], before)
+                                                    : fma(radiance, t.density[i], before);
+    store(gathered.sum, first + i * width, more);
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

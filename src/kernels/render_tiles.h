@@ -1,0 +1,124 @@
+#pragma once
+
+#include "kernels/reuse.h"
+#include "kernels/stages.h"
+
+// A job from camera rays to radiance: every pixel by itself, or the pixels of each tile together.
+
+namespace castray::CASTRAY_ISA {
+
+struct Scratch {
+  FarEnds ends;
+  Paths paths;
+  Hits hits;
+  Vertices camera, vertices;
+  ShadowRays shadow_rays;
+  Radiance radiance;
+  Suffixes suffixes;
+  Gathered gathered;
+  VisibilityScratch visibility;
+  Box boxes[max_tiles];
+};
+
+/// Automatic roulette starts at this vertex; the same as first_roulette_vertex of the reference.
+inline constexpr uint32_t first_roulette = 2;
+/// A suffix serves many pixels, so it is worth following further.
+inline constexpr uint32_t first_roulette_of_suffixes = 4;
+
+CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges) {
+  return options.max_depth == 0 || edges <= options.max_depth;
+}
+
+/// Lights the vertices, which are number `vertex` of their paths, and follows the paths to their ends.
+template <uint32_t features>
+CASTRAY_INLINE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
+  const bool may_find_lights = c.options.mis || (features & feature_materials);
+  Vertices* current = &vertices;
+  for (; may_have_edges(c.options, vertex + 2); ++vertex) {
+    light<features>(c, *current, vertex, s.shadow_rays);
+    add_unblocked<features>(c, s.ends, s.shadow_rays, s.radiance);
+    scatter<features>(c, *current, vertex, roulette, s.paths);
+    if (s.paths.count == 0) return;
+    closest<features>(c, s.paths, s.ends, false, s.hits);
+    surfaces<features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
+    current = &s.vertices;
+  }
+}
+
+/// Takes the vertices that cannot share, those with a specular part, out of `camera` into `out`.
+CASTRAY_INLINE void split_specular(const KernelScene& scene, Vertices& camera, Vertices& out) {
+  out.count = 0;
+  for (int i = 0; i < camera.count; i += width) {
+    const Uint record = load(camera.material + i) & 0x7fffffffu;
+    const Uint kind = gather(&scene.materials->kind, record);
+    const Mask smooth = gather(&scene.materials->alpha, record) <= Float(0.f);
+    const Vec normal = load(camera.normal, i);
+    const Mask alone = first_lanes(camera.count - i) & (length_squared(normal) > Float(0.f)) &
+                       ((kind == Uint(kind_dielectric)) | (smooth & ~(kind == Uint(kind_diffuse))));
+    if (none(alone)) continue;
+    const int n = out.count;
+    compress_store(out.p, n, alone, load(camera.p, i));
+    compress_store(out.normal, n, alone, normal);
+    compress_store(out.albedo, n, alone, load(camera.albedo, i));
+    compress_store(out.throughput, n, alone, load(camera.throughput, i));
+    compress_store(out.material + n, alone, load(camera.material + i));
+    compress_names(out.names, n, alone, camera.names, i);
+    compress_store(out.wo, n, alone, load(camera.wo, i));
+    compress_store(out.shading_normal, n, alone, load(camera.shading_normal, i));
+    compress_store(out.error + n, alone, load(camera.error + i));
+    compress_store(out.eta2 + n, alone, load(camera.eta2 + i));
+    out.count += count(alone);
+    store(camera.normal, i, select(alone, black(), normal));
+    store(camera.albedo, i, select(alone, black(), load(camera.albedo, i)));
+  }
+}
+
+/// The light that the camera's vertices reflect, gathered tile by tile.
+template <uint32_t features>
+CASTRAY_INLINE void share(Context& c, Scratch& s) {
+  const int n = c.job.tiles * tile_pixels;
+  for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
+  if constexpr (features & feature_materials) {
+    split_specular(c.scene, s.camera, s.vertices);
+    if (s.vertices.count > 0) follow<features>(c, s, s.vertices, 0, first_roulette);
+  }
+  for (int tile = 0; tile < c.job.tiles; ++tile) s.boxes[tile] = bounds_of(s.camera, tile * tile_pixels);
+  gather_light<features>(c, s.camera, s.boxes, s.ends, s.visibility, s.gathered);
+  start_suffixes<features>(c, s.camera, s.suffixes, s.paths);
+  closest<features>(c, s.paths, s.ends, false, s.hits);
+  surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+  keep_suffixes<features>(c, s.vertices, s.suffixes);
+  follow<features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
+  gather_suffixes<features>(c, s.camera, s.boxes, s.ends, s.suffixes, s.radiance, s.visibility, s.gathered);
+  for (int i = 0; i < n; i += width) {
+    const Vec sum = load(s.gathered.sum, i);
+    const Vec reflected = (features & feature_materials) ? sum : sum * load(s.camera.albedo, i);
+    store(s.radiance.x + i, load(s.radiance.x + i) + reflected.x);
+    store(s.radiance.y + i, load(s.radiance.y + i) + reflected.y);
+    store(s.radiance.z + i, load(s.radiance.z + i) + reflected.z);
+  }
+}
+
+template <uint32_t features>
+CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
+                                 void* scratch, TileResult& result) {
+  Scratch& s = *static_cast<Scratch*>(scratch);
+  Context c{scene, options, job};
+  fill(s.ends);
+  for (int i = 0; i < 2 * batch_size; ++i) s.radiance.x[i] = s.radiance.y[i] = s.radiance.z[i] = 0;
+  camera_rays(c, s.paths);
+  closest<features>(c, s.paths, s.ends, true, s.hits);
+  surfaces<features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
+  if (options.suffixes > 0 && may_have_edges(options, 2))
+    share<features>(c, s);
+  else
+    follow<features>(c, s, s.camera, 0, first_roulette);
+  for (int i = 0; i < job.tiles * tile_pixels; ++i) {
+    result.radiance[0][i] = s.radiance.x[i];
+    result.radiance[1][i] = s.radiance.y[i];
+    result.radiance[2][i] = s.radiance.z[i];
+  }
+  result.rays += c.rays;
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,11 @@
+#include "kernels/render_tiles.h"
+#include "kernels/tiles.h"
+
+namespace castray::CASTRAY_ISA {
+
+void render_tiles_bvh(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
+                      void* scratch, TileResult& result) {
+  render_tiles<feature_bvh | feature_materials>(scene, options, job, scratch, result);
+}
+
+}  // namespace castray::CASTRAY_ISA

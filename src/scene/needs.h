@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+
+#include "castray/scene.h"
+
+namespace castray {
+
+/// The census of a scene: which features it really uses, by the triangles that are there.
+struct SceneNeeds {
+  std::size_t triangles = 0, lights = 0;  ///< lights: emitting triangles
+  bool textures = false, smooth_normals = false;
+  bool microfacet = false, conductor = false, dielectric = false;
+  bool environment = false;
+  double emitting_share = 0;  ///< of the scene's surface area
+};
+
+SceneNeeds needs_of(const Scene& scene);
+
+}  // namespace castray
