@@ -92,7 +92,8 @@ Contender configuration_contender(const ConfiguredRender& where, const Configura
     now.seed = seed;
     const RenderResult result = render(where.scene, now);
     Rendering rendering{result.film.image(), result.stats.render_seconds, {}};
-    if (seed == 1) rendering.process_seconds = whole_process_seconds(where, flags, spp, seed);
+    if (seed == 1 && kind == ContenderKind::configuration)
+      rendering.process_seconds = whole_process_seconds(where, flags, spp, seed);
     return rendering;
   };
   return {configuration.name, kind, configuration.flags, render_one};

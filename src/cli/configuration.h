@@ -27,7 +27,8 @@ struct ConfiguredRender {
   int width = 0, height = 0, threads = 0;  ///< threads 0: those of the flags
 };
 
-/// Renders by the library; with seed 1, also as a process of its own, to time the whole.
+/// Renders by the library; with seed 1, unless it is an ablation, also as a process of its own, to time the
+/// whole.
 Contender configuration_contender(const ConfiguredRender& where, const Configuration& configuration,
                                   ContenderKind kind);
 

@@ -45,7 +45,7 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
       "--threads 1 -q -o {out} && echo seconds: 0.25";
   const RunResult result = run_castray(
       small_bench({"--config", "plain=--integrator reference", "--peer", peer, "--json", "r.json", "--csv",
-                   "r.csv", "--html", "r.html", "--svg", "r.svg", "--equal-time", "0.0625"}),
+                   "r.csv", "--html", "r.html", "--svg", "r.svg", "--ablation", "--equal-time", "0.0625"}),
       folder.path());
   CAPTURE(result.err);
   REQUIRE(result.exit_code == 0);
@@ -58,7 +58,7 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
   CHECK(scene["counted_share"] > 0.9);
   CHECK(scene["counted_share"] < 1);
   const auto& plain = scene["curves"][0];
-  const auto& itself = scene["curves"][1];
+  const auto& itself = scene["curves"].back();
   for (int budget = 0; budget < 2; ++budget) {
     for (int run = 0; run < 3; ++run) {
       // The same samples: the peer's image went through a file and is the same.
@@ -71,6 +71,13 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
   CHECK(plain["points"][1]["relmse"] < plain["points"][0]["relmse"]);
   CHECK(itself["equal_time"]["spp"] == 1);
   CHECK(itself["detail"] == peer.substr(peer.find('=') + 1));
+
+  const auto& ablation = scene["ablation"];
+  const auto independent = std::find_if(ablation.begin(), ablation.end(),
+                                        [](const auto& row) { return row["name"] == "independent samples"; });
+  REQUIRE(independent != ablation.end());
+  CHECK((*independent)["detail"] == "--integrator reference --sampler independent");
+  CHECK((*independent)["relmse_ratio"] != 1);
 
   CHECK_THAT(read_file(folder / "r.html"), Contains("<!doctype html>") && Contains("data:image/png") &&
                                                Contains("</html>") && !Contains("http"));
