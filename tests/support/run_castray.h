@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -33,6 +34,7 @@ struct RunSettings {
   std::vector<std::pair<std::string, std::string>> variables{};  ///< environment
   std::string input_file = "/dev/null";
   unsigned seconds = 120;  ///< ends it with SIGALRM
+  int signal = 0;          ///< sent once it has written to stderr
 };
 
 inline std::string file_content(const std::filesystem::path& file) {
@@ -64,6 +66,10 @@ inline RunResult run_castray(const std::vector<std::string>& arguments, const Ru
     alarm(settings.seconds);
     execv(argv[0], argv.data());
     _exit(127);
+  }
+  if (settings.signal != 0) {
+    while (file_content(err).empty() && waitpid(child, nullptr, WNOHANG) == 0) usleep(10000);
+    kill(child, settings.signal);
   }
   int status = 0;
   rusage usage{};

@@ -1,0 +1,233 @@
+#include <catch2/catch.hpp>
+
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "castray/film.h"
+#include "core/files.h"
+#include "run_castray.h"
+
+using namespace castray;
+using Catch::Contains;
+
+namespace {
+
+const std::string cornell = CASTRAY_ROOT "/scenes/cornell_box.json";
+
+/// A render of the Cornell box in 16x16 pixels by the reference, in the folder.
+RunResult render_small(const TemporaryFolder& folder, std::vector<std::string> more) {
+  std::vector<std::string> arguments{"render", cornell, "--size", "16x16", "--integrator", "reference"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_castray(arguments, folder.path());
+}
+
+/// A render that would take hours.
+std::vector<std::string> endless(std::vector<std::string> more) {
+  std::vector<std::string> arguments{"render",     cornell,        "--size",    "64x64", "--spp",
+                                     "4000000000", "--integrator", "reference", "-o",    "x.pfm"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+nlohmann::json stats_in(const TemporaryFolder& folder) {
+  return nlohmann::json::parse(read_file(folder / "s.json"));
+}
+
+}  // namespace
+
+TEST_CASE("render writes every output, tells the summary on stderr and its times in --stats") {
+  const TemporaryFolder folder;
+  const RunResult result =
+      render_small(folder, {"--spp", "2", "-o", "x.png", "-o", "x.pfm", "-o", "x.film", "--stats", "s.json"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.out.empty());
+  CHECK_THAT(result.err,
+             Contains("BVH generation complete") && Contains("Render complete") && Contains("spp"));
+  CHECK(folder.names() == std::vector<std::string>{"s.json", "x.film", "x.pfm", "x.png"});
+  CHECK(read_image(folder / "x.pfm").image.pixels == read_film(folder / "x.film").image().pixels);
+
+  const auto stats = stats_in(folder);
+  for (const char* key : {"version",
+                          "scene",
+                          "width",
+                          "height",
+                          "spp",
+                          "seed",
+                          "threads",
+                          "isa",
+                          "kernel",
+                          "skipped",
+                          "triangles",
+                          "lights",
+                          "load_seconds",
+                          "bvh_seconds",
+                          "render_seconds",
+                          "total_seconds",
+                          "paths",
+                          "rays",
+                          "mpaths_per_second",
+                          "mrays_per_second",
+                          "peak_memory_bytes",
+                          "nonfinite_samples",
+                          "stopped"})
+    CHECK(stats.contains(key));
+  CHECK(stats["stopped"] == "done");
+  CHECK(stats["paths"] == 2 * 16 * 16);
+  CHECK(stats["triangles"] == 32);
+  CHECK(stats["nonfinite_samples"] == 0);
+}
+
+TEST_CASE("without -o the image is named after the scene") {
+  const TemporaryFolder folder;
+  CHECK(render_small(folder, {"--spp", "1", "-q"}).exit_code == 0);
+  CHECK(folder.names() == std::vector<std::string>{"cornell_box.png"});
+}
+
+TEST_CASE("the scene's own defaults apply, the command line wins") {
+  const TemporaryFolder folder;
+  std::string scene = read_file(cornell);
+  const std::string given = "\"render\": { \"spp\": 64 }";
+  scene.replace(scene.find(given), given.size(), "\"render\": { \"spp\": 3, \"seed\": 5 }");
+  for (std::size_t at; (at = scene.find("../models")) != std::string::npos;)
+    scene.replace(at, 9, CASTRAY_ROOT "/models");
+  write_file(folder / "own.json", scene);
+  const std::vector<std::string> arguments{"render", "own.json", "--size", "8x8", "-q", "--stats", "s.json"};
+  REQUIRE(run_castray(arguments, folder.path()).exit_code == 0);
+  CHECK(stats_in(folder)["spp"] == 3);
+  CHECK(stats_in(folder)["seed"] == 5);
+  std::vector<std::string> more = arguments;
+  more.insert(more.end(), {"--spp", "2"});
+  REQUIRE(run_castray(more, folder.path()).exit_code == 0);
+  CHECK(stats_in(folder)["spp"] == 2);
+
+  scene.replace(scene.find("\"seed\""), 6, "\"sead\"");
+  write_file(folder / "own.json", scene);
+  const RunResult wrong = run_castray(arguments, folder.path());
+  CHECK(wrong.exit_code == 2);
+  CHECK_THAT(wrong.err, Contains("own.json:6:") && Contains("did you mean 'seed'"));
+}
+
+TEST_CASE("SIGINT and SIGTERM save what was rendered and exit with 130") {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const TemporaryFolder folder;
+    const RunResult result =
+        run_castray(endless({"--progress", "lines", "--checkpoint", "c.film", "--stats", "s.json"}),
+                    RunSettings{.folder = folder.path(), .signal = signal});
+    CHECK(result.exit_code == 130);
+    CHECK_THAT(result.err, Contains("stopped early: interrupted"));
+    CHECK(folder.names() == std::vector<std::string>{"c.film", "s.json", "x.pfm"});
+    CHECK(stats_in(folder)["stopped"] == "interrupted");
+    CHECK(read_film(folder / "c.film").count(0, 0) > 0);
+    const Image image = read_image(folder / "x.pfm").image;
+    CHECK(image.at(32, 10).x > 10);  // the light
+  }
+}
+
+TEST_CASE("--time-limit stops early, says so and exits with 1") {
+  const TemporaryFolder folder;
+  const RunResult result = run_castray(endless({"--time-limit", "0.2", "--stats", "s.json"}), folder.path());
+  CHECK(result.exit_code == 1);
+  CHECK_THAT(result.err, Contains("stopped early: time-limit"));
+  CHECK(stats_in(folder)["stopped"] == "time-limit");
+  CHECK(read_image(folder / "x.pfm").image.at(32, 10).x > 10);
+}
+
+TEST_CASE("a checkpoint is resumed to the same bytes") {
+  const TemporaryFolder folder;
+  REQUIRE(render_small(folder, {"--spp", "12", "-o", "whole.film", "-q"}).exit_code == 0);
+  REQUIRE(render_small(folder, {"--spp", "5", "-o", "x.pfm", "--checkpoint", "c.film", "-q"}).exit_code == 0);
+  REQUIRE(render_small(folder, {"--spp", "12", "-o", "x.film", "--checkpoint", "c.film", "--resume", "-q"})
+              .exit_code == 0);
+  CHECK(read_file(folder / "x.film") == read_file(folder / "whole.film"));
+  const RunResult other =
+      render_small(folder, {"--spp", "12", "--seed", "3", "--checkpoint", "c.film", "--resume", "-q"});
+  CHECK(other.exit_code == 2);
+  CHECK_THAT(other.err, Contains("another render"));
+}
+
+TEST_CASE("progress is a bar, lines, or nothing") {
+  const TemporaryFolder folder;
+  const auto progress = [&](const char* mode) {
+    return run_castray(endless({"--time-limit", "1.3", "--progress", mode}), folder.path()).err;
+  };
+  const std::string bar = progress("bar"), lines = progress("lines"), automatic = progress("auto");
+  CHECK_THAT(bar, Contains("\r[") && Contains(" %") && Contains("elapsed") && Contains("left") &&
+                      Contains("Msamples/s"));
+  CHECK_THAT(lines, Contains("elapsed") && Contains("left") && !Contains("\r"));
+  CHECK_THAT(automatic, Contains("elapsed") && !Contains("\r"));  // stderr is no terminal here
+  CHECK_THAT(progress("off"), !Contains("elapsed"));
+}
+
+TEST_CASE("render refuses what it does not understand, in one line, before it starts") {
+  const TemporaryFolder folder;
+  struct Case {
+    std::vector<std::string> arguments;
+    const char* message;
+  };
+  const Case cases[] = {
+      {{"render"}, "scene is required"},
+      {{"render", cornell, "--sppp", "4"}, "did you mean '--spp'"},
+      {{"render", cornell, "extra"}, "extra"},
+      {{"render", cornell, "--spp", "0"}, "--spp '0'"},
+      {{"render", cornell, "--spp", "-3"}, "--spp '-3'"},
+      {{"render", cornell, "--spp", "1e18"}, "--spp '1e18'"},
+      {{"render", cornell, "--size", "640"}, "--size '640'"},
+      {{"render", cornell, "--size", "99999999x99999999"}, "--size"},
+      {{"render", cornell, "--size", "65536x65536"}, "--size"},
+      {{"render", cornell, "--crop", "0,0,0,0"}, "--crop"},
+      {{"render", cornell, "--rr", "2"}, "--rr"},
+      {{"render", cornell, "--rr", "nan"}, "--rr"},
+      {{"render", cornell, "--max-depth", "0"}, "--max-depth '0'"},
+      {{"render", cornell, "--epsilon", "x"}, "--epsilon 'x'"},
+      {{"render", cornell, "--integrator", "refrence"}, "did you mean 'reference'"},
+      {{"render", cornell, "--sampler", "halton"}, "known: sobol, independent"},
+      {{"render", cornell, "--tone", "gama:2"}, "gama:2"},
+      {{"render", cornell, "--fault", "blacklight", "--integrator", "reference"},
+       "did you mean 'black-light'"},
+      {{"render", cornell, "--threads", "0"}, "--threads '0'"},
+      {{"render", cornell, "--samples", "4"}, "--samples '4'"},
+      {{"render", cornell, "--resume"}, "--checkpoint"},
+      {{"render", cornell, "--checkpoint", "c.png"}, ".film"},
+      {{"render", cornell, "-o", "x.gif"}, ".gif"},
+      {{"render", cornell, "-o", "no/x.png"}, "does not exist"},
+      {{"render", cornell, "--stats", "no/s.json"}, "does not exist"},
+      {{"render", cornell, "--fov", "180"}, "fov"},
+      {{"render", cornell, "--look-at", "1,2"}, "X,Y,Z"},
+      {{"render", "none.json"}, "none.json"},
+  };
+  for (const Case& c : cases) {
+    const RunResult result = run_castray(c.arguments, folder.path());
+    CAPTURE(c.message, result.err);
+    CHECK(result.exit_code == 2);
+    CHECK(result.error_lines() == 1);
+    CHECK_THAT(result.err, Contains("castray: error: ") && Contains(c.message));
+    CHECK(folder.names().empty());
+  }
+}
+
+TEST_CASE("an .obj is seen by an automatic view or by camera flags") {
+  const TemporaryFolder folder;
+  const std::string obj = CASTRAY_ROOT "/models/cornell_box/cornell_box.obj";
+  REQUIRE(run_castray({"render", obj, "--size", "16x16", "--spp", "4", "--integrator", "reference", "-q",
+                       "-o", "a.pfm"},
+                      folder.path())
+              .exit_code == 0);
+  REQUIRE(run_castray(
+              {"render", obj, "--size", "16x16", "--spp", "4", "--integrator", "reference", "-q",
+               "--camera-position", "278,273,-800", "--look-at", "278,273,0", "--fov", "40", "-o", "b.pfm"},
+              folder.path())
+              .exit_code == 0);
+  REQUIRE(run_castray({"render", cornell, "--size", "16x16", "--spp", "4", "--integrator", "reference", "-q",
+                       "-o", "c.pfm"},
+                      folder.path())
+              .exit_code == 0);
+  const Image flags = read_image(folder / "b.pfm").image, scene = read_image(folder / "c.pfm").image;
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < flags.pixels.size(); ++i) {
+    difference += std::abs(double(flags.pixels[i].y - scene.pixels[i].y));
+    sum += double(scene.pixels[i].y);
+  }
+  CHECK(difference < 0.01 * sum);  // the same view of the same box, but for roundings
+  CHECK(read_image(folder / "a.pfm").image.pixels != flags.pixels);
+}
