@@ -71,13 +71,14 @@ Imf::FrameBuffer frame_of(Image& image, const std::array<const char*, 3>& names,
 }
 
 ImageFile read_from(const std::string& name, std::string_view bytes) {
+  check_exr_headers(name, bytes);
   BytesIn in(name, bytes);
   Imf::InputFile file(in, 0);
   const Imf::Header& header = file.header();
   const Imath::Box2i window = header.dataWindow();
   const double width = double(window.max.x) - window.min.x + 1,
                height = double(window.max.y) - window.min.y + 1;
-  check_image_size(name, width, height, bytes.size(), 2000);
+  check_image_size(name, width, height, bytes.size(), exr_pixels_per_byte);
   const auto names = channels_of(header.channels());
   ImageFile result{Image(static_cast<int>(width), static_cast<int>(height)), false, {}};
   Image& image = result.image;

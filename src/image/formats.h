@@ -35,4 +35,11 @@ void write_png(std::ostream& out, const Image8& image, const Metadata& metadata)
 void check_image_size(const std::string& name, double width, double height, std::size_t file_length,
                       double pixels_per_byte);
 
+/// As `check_image_size` asks for; the format's compressions pack no more.
+inline constexpr double exr_pixels_per_byte = 2000;
+
+/// Throws InputError unless the lengths in an OpenEXR file's headers agree with one another and with the
+/// file's. OpenEXR itself takes the memory that they claim before it notices.
+void check_exr_headers(const std::string& name, std::string_view bytes);
+
 }  // namespace castray

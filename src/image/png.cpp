@@ -44,6 +44,19 @@ struct Reader {
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
+/// Throws InputError where a chunk claims to be longer than the file: libpng would take the memory first.
+void check_chunk_lengths(const std::string& name, std::string_view bytes) {
+  constexpr std::size_t signature = 8, around = 12;  // length, type and checksum
+  for (std::size_t at = signature; at + around <= bytes.size();) {
+    const auto byte = [&](std::size_t i) {
+      return static_cast<std::size_t>(static_cast<unsigned char>(bytes[at + i]));
+    };
+    const std::size_t length = byte(0) << 24 | byte(1) << 16 | byte(2) << 8 | byte(3);
+    if (length > bytes.size() - at - around) throw InputError({name}, "is truncated or corrupt");
+    at += length + around;
+  }
+}
+
 bool read_header(const Reader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_read_info(reader.png, reader.info);
@@ -113,6 +126,7 @@ png_text text_of(const std::string& key, const std::string& value) {
 
 ImageFile read_png(const std::string& name, std::string_view bytes) {
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw InputError({name}, "is not a PNG file");
+  check_chunk_lengths(name, bytes);
   Failure failure;
   Source source{bytes};
   Reader reader;

@@ -64,8 +64,8 @@ Material to_material(const MtlMaterial& mtl) {
 
 class MtlReader {
  public:
-  MtlReader(const std::filesystem::path& file, SceneBuilder& builder)
-      : file_(file), builder_(builder), content_(read_file(file)), lines_(content_, file.string()) {}
+  MtlReader(std::string_view text, const std::filesystem::path& file, SceneBuilder& builder)
+      : file_(file), builder_(builder), lines_(text, file.string()) {}
 
   std::vector<std::uint16_t> read() {
     while (lines_.next_line()) read_statement();
@@ -133,15 +133,19 @@ class MtlReader {
 
   std::filesystem::path file_;
   SceneBuilder& builder_;
-  std::string content_;
   LineReader lines_;
   std::vector<MtlMaterial> materials_;
 };
 
 }  // namespace
 
+std::vector<std::uint16_t> parse_mtl(std::string_view text, const std::filesystem::path& file,
+                                     SceneBuilder& builder) {
+  return MtlReader(text, file, builder).read();
+}
+
 std::vector<std::uint16_t> read_mtl(const std::filesystem::path& file, SceneBuilder& builder) {
-  return MtlReader(file, builder).read();
+  return parse_mtl(read_file(file), file, builder);
 }
 
 bool is_file(const std::filesystem::path& path) {

@@ -23,12 +23,9 @@ struct Corner {
 
 class ObjReader {
  public:
-  ObjReader(const std::filesystem::path& file, const ObjOptions& options, SceneBuilder& builder)
-      : file_(file),
-        options_(options),
-        builder_(builder),
-        content_(read_file(file)),
-        lines_(content_, file.string()) {}
+  ObjReader(std::string_view text, const std::filesystem::path& file, const ObjOptions& options,
+            SceneBuilder& builder)
+      : file_(file), options_(options), builder_(builder), lines_(text, file.string()) {}
 
   Mesh read() {
     while (lines_.next_line()) read_statement();
@@ -215,7 +212,6 @@ class ObjReader {
   std::filesystem::path file_;
   ObjOptions options_;
   SceneBuilder& builder_;
-  std::string content_;
   LineReader lines_;
   Mesh mesh_;
   std::optional<std::uint16_t> current_material_;
@@ -227,8 +223,13 @@ class ObjReader {
 
 }  // namespace
 
+Mesh parse_obj(std::string_view text, const std::filesystem::path& file, const ObjOptions& options,
+               SceneBuilder& builder) {
+  return ObjReader(text, file, options, builder).read();
+}
+
 Mesh read_obj(const std::filesystem::path& file, const ObjOptions& options, SceneBuilder& builder) {
-  return ObjReader(file, options, builder).read();
+  return parse_obj(read_file(file), file, options, builder);
 }
 
 }  // namespace castray

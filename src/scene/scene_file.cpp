@@ -70,9 +70,8 @@ class SceneFileReader {
     builder_.scene.name = file.stem().string();
   }
 
-  Scene read() {
-    const std::string content = read_file(file_);
-    const JsonNode root = parse_json(content, file_.string());
+  Scene read(std::string_view text) {
+    const JsonNode root = parse_json(text, file_.string());
     const ObjectReader scene(root, "the scene", keys_of("scene"));
     if (const JsonNode* node = scene.find("image")) read_image_size(*node);
     if (const JsonNode* node = scene.find("render")) read_render(*node);
@@ -251,6 +250,10 @@ const std::vector<SceneSection>& scene_sections() {
   return sections;
 }
 
-Scene read_scene_file(const std::filesystem::path& file) { return SceneFileReader(file).read(); }
+Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+  return SceneFileReader(file).read(text);
+}
+
+Scene read_scene_file(const std::filesystem::path& file) { return parse_scene(read_file(file), file); }
 
 }  // namespace castray

@@ -15,6 +15,8 @@ struct SceneSection {
 };
 const std::vector<SceneSection>& scene_sections();
 
+/// Reads a scene file, or the text that is its content. Throws InputError with the place of the first error.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file);
 Scene read_scene_file(const std::filesystem::path& file);
 
 }  // namespace castray

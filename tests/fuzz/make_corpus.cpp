@@ -1,0 +1,103 @@
+// Writes the inputs that fuzzing starts from: FOLDER/<target>/<seed>.
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+#include "castray/film.h"
+#include "castray/image.h"
+#include "core/files.h"
+#include "image/formats.h"
+#include "temporary_folder.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace castray;
+
+void write_seed(const fs::path& folder, const std::string& name, const std::string& content) {
+  fs::create_directories(folder);
+  write_file(folder / name, content);
+}
+
+void copy_files(const fs::path& from, const std::string& suffix, const fs::path& to) {
+  fs::create_directories(to);
+  for (const auto& entry : fs::recursive_directory_iterator(from))
+    if (entry.path().extension() == suffix && entry.file_size() < 4096)
+      fs::copy_file(entry.path(), to / entry.path().filename(), fs::copy_options::overwrite_existing);
+}
+
+Image small_image() {
+  Image image(9, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = Vec3f(static_cast<float>(i) * 0.05f, 0.5f, i % 3 == 0 ? 1.f : 0.f);
+  return image;
+}
+
+/// In the order in which the image target chooses.
+void write_images(const fs::path& folder) {
+  const TemporaryFolder made;
+  char choice = 0;
+  for (const std::string suffix : {".ppm", ".pfm", ".png", ".hdr", ".exr"}) {
+    const fs::path file = made / ("image" + suffix);
+    write_image(file, small_image(), {}, {{"scene", "s"}, {"spp", "4"}});
+    write_seed(folder, suffix.substr(1), choice + read_file(file));
+    ++choice;
+  }
+  write_seed(folder, "ppm_text", std::string(1, '\0') + "P3\n# grey\n2 1 255\n0 0 0 255 255 255\n");
+}
+
+void write_films(const fs::path& folder) {
+  Film film(Window{4, 4, 1, 1, 3, 3}, 10);
+  for (int y = 1; y < 3; ++y)
+    for (int x = 1; x < 3; ++x) film.add(x, y, {1, 2, 3});
+  film.samples = {{0, 1}};
+  film.key = "scene s, seed 0";
+  const TemporaryFolder made;
+  write_film(made / "a.film", film);
+  write_seed(folder, "film", read_file(made / "a.film"));
+}
+
+void write_scenes(const fs::path& folder) {
+  copy_files(fs::path(CASTRAY_ROOT) / "scenes", ".json", folder);
+  write_seed(folder, "all",
+             R"({ "camera": { "position": [0, 0, 3], "look_at": [0, 0, 0], "up": [0, 1, 0], "fov": 40 },
+"image": { "width": 8, "height": 8 }, "render": { "spp": 4, "jitter": false, "crop": [0, 0, 1, 1] },
+"materials": { "a": { "type": "microfacet", "kd": [1, 0, 0], "ks": [0, 1, 0], "roughness": 0.5, "ke": [1, 2, 3] },
+ "b": { "type": "dielectric", "ior": 1.5, "alpha": 0, "two_sided_emission": true },
+ "c": { "type": "conductor", "reflectance": [1, 1, 1] } },
+"meshes": [ { "obj": "t.obj", "material": "a", "normals": "face", "transform": [ { "scale": -2 }, { "scale": [1, 2, 3] },
+ { "rotate": [0, 1, 0, 30] }, { "translate": [1, 0, 0] } ] }, { "obj": "t.obj" } ], // twice
+"environment": { "radiance": [0, 0, 1] } })");
+}
+
+void write_objs(const fs::path& folder) {
+  copy_files(fs::path(CASTRAY_ROOT) / "models", ".obj", folder);
+  write_seed(
+      folder, "all",
+      "# all\r\nmtllib a.mtl b.mtl\r\nv 0 0 0\r\nv 1e0 +0 -0.0\nv 1 1 0\nv .5 .5 0\nvt 0.5\nvt 0 1\n"
+      "vn 0 0 1\ng x\ns off\no y\nusemtl a\nf 1 2 3 4\nf 1/1 2/2 3/1\nf -1//1 -2//1 \\\n -3//1\nl 1 2\n");
+}
+
+void write_mtls(const fs::path& folder) {
+  copy_files(fs::path(CASTRAY_ROOT) / "models", ".mtl", folder);
+  write_seed(folder, "all",
+             "newmtl a\nKd 1 1 1\nKs .5\nKe 3 2 1\nNs 10\nNi 1.5\nPr 0.5\nPm 1\nillum 7\nd 1\n"
+             "map_Kd -s 1 2 3 -o 1 -clamp on -mm 0 1 a b.png\nnewmtl b\nKa 0 0 0\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: castray-fuzz-corpus FOLDER\n";
+    return 2;
+  }
+  const fs::path folder = argv[1];
+  write_scenes(folder / "scene_json");
+  write_objs(folder / "obj");
+  write_mtls(folder / "mtl");
+  write_images(folder / "image");
+  write_films(folder / "film");
+}
