@@ -7,6 +7,7 @@
 
 #include "castray/film.h"
 #include "castray/image.h"
+#include "cli/render_flags.h"
 #include "core/files.h"
 #include "image/formats.h"
 #include "temporary_folder.h"
@@ -87,6 +88,25 @@ void write_mtls(const fs::path& folder) {
              "map_Kd -s 1 2 3 -o 1 -clamp on -mm 0 1 a b.png\nnewmtl b\nKa 0 0 0\n");
 }
 
+void write_arguments(const fs::path& folder) {
+  std::string every_flag = "render\ns.json\n", every_default = "=";
+  for (const cli::RenderFlag& flag : cli::render_flags()) {
+    every_flag +=
+        std::string("--") + flag.name + "\n" + (flag.metavar ? std::string(flag.metavar) + "\n" : "");
+    if (flag.in_scene)
+      write_seed(folder, flag.name,
+                 std::string("=") + flag.name + " " + (flag.metavar ? flag.metavar : "on"));
+  }
+  write_seed(folder, "render", every_flag);
+  write_seed(folder, "values",
+             "=spp 64\nsize 640x480\nrr 0.5\nmax-depth none\nreuse 8x8:32\ntone gamma:0.6\nseed "
+             "18446744073709551615");
+  write_seed(folder, "compare", "compare\na.png\nb.pfm\n--max\nrelmse=1e-3\n--json\nc.json");
+  write_seed(folder, "merge", "merge\na.film\nb.film\n-o\nc.film");
+  write_seed(folder, "convert", "convert\na.pfm\n-o\nb.png\n--exposure=1\n--tone=srgb");
+  write_seed(folder, "help", "--help");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -100,4 +120,5 @@ int main(int argc, char** argv) {
   write_mtls(folder / "mtl");
   write_images(folder / "image");
   write_films(folder / "film");
+  write_arguments(folder / "arguments");
 }
