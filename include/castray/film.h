@@ -113,7 +113,7 @@ class Film {
   std::vector<Replicate> replicates_;  ///< ascending
 };
 
-/// The items of the film's key, and "spp", the number of its sample indices.
+/// What a film says of itself, as PNG and EXR files hold it: scene, seed, spp and options.
 Metadata describe(const Film& film);
 
 /// Reads a .film file. Throws InputError if it is not one, is truncated or corrupt.

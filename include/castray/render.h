@@ -110,4 +110,11 @@ struct RenderResult {
 RenderResult render(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress = {},
                     const Film* start = nullptr);
 
+/// Renders `replicates` independent replicates (see `replicate_length`) of spp / replicates samples each, or
+/// of `options.samples` within each replicate, into a film that keeps them apart and so tells its own noise.
+/// If it is stopped early, only whole replicates are kept. Throws InputError also where the samples cannot be
+/// divided.
+RenderResult render_replicates(const Scene& scene, const RenderOptions& options, std::uint64_t replicates,
+                               const ProgressCallback& progress = {});
+
 }  // namespace castray

@@ -80,6 +80,10 @@ RenderRequest request_of(const RenderCommand& command, const Scene& scene) {
 void check(const RenderRequest& request) {
   if (request.resume && !request.checkpoint)
     throw InputError("--resume: needs --checkpoint FILE to resume from");
+  if (request.replicates &&
+      (request.checkpoint || request.options.time_limit || request.options.target_error))
+    throw InputError(
+        "--replicates: cannot go with --checkpoint, --time-limit or --target-error; leave one out");
   for (const fs::path& output : request.outputs) check_output_image(output);
   if (request.checkpoint && !is_film_format(*request.checkpoint))
     throw InputError(request.checkpoint->string() + ": a checkpoint's name must end in .film");
@@ -98,17 +102,17 @@ RenderResult render_watched(const Scene& scene, const RenderRequest& request) {
   const std::unique_ptr<Film> start = film_to_resume(request);
   ProgressDisplay display(request.quiet ? ProgressMode::off : request.progress);
   Clock::time_point saved = Clock::now();
-  RenderResult result = render(
-      scene, request.options,
-      [&](const Progress& progress) {
-        display.update(progress);
-        if (request.checkpoint && progress.film && seconds_since(saved) >= request.checkpoint_seconds) {
-          write_film(*request.checkpoint, *progress.film);
-          saved = Clock::now();
-        }
-        return !interrupted();
-      },
-      start.get());
+  const ProgressCallback watch = [&](const Progress& progress) {
+    display.update(progress);
+    if (request.checkpoint && progress.film && seconds_since(saved) >= request.checkpoint_seconds) {
+      write_film(*request.checkpoint, *progress.film);
+      saved = Clock::now();
+    }
+    return !interrupted();
+  };
+  RenderResult result = request.replicates
+                            ? render_replicates(scene, request.options, request.replicates, watch)
+                            : render(scene, request.options, watch, start.get());
   display.finish();
   return result;
 }

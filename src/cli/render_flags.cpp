@@ -95,6 +95,8 @@ const RenderFlag flags[] = {
      false},
     {"seed", "N", "[0]", sampling,
      [](Request r, Text f, Text t) { r.options.seed = parse_whole(f, t, 0, most_whole); }},
+    {"replicates", "R", "share the samples out to R independent replicates, for 'castray compare --ztest'",
+     sampling, [](Request r, Text f, Text t) { r.replicates = parse_whole(f, t, 1, 4096); }, false},
     {"sampler", "sobol|independent", "[sobol]", sampling,
      [](Request r, Text f, Text t) {
        r.options.sampler = parse_choice<SamplerKind>(

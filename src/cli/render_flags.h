@@ -28,6 +28,7 @@ struct RenderRequest {
   std::vector<std::filesystem::path> outputs;
   std::optional<std::filesystem::path> checkpoint, stats;
   double checkpoint_seconds = 60;
+  std::uint64_t replicates = 0;  ///< 0: one film that does not tell its noise
   bool resume = false, quiet = false, verbose = false;
   ProgressMode progress = ProgressMode::automatic;
 };

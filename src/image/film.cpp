@@ -169,14 +169,13 @@ void Film::merge(const Film& other) {
 }
 
 Metadata describe(const Film& film) {
-  Metadata metadata;
-  for (const std::string& item : items_of(film.key)) {
-    const std::size_t end = std::min(item.find('='), item.size());
-    if (end > 0) metadata[item.substr(0, end)] = item.substr(std::min(end + 1, item.size()));
-  }
+  Metadata metadata{{"castray:options", film.key}};
+  for (const std::string& item : items_of(film.key))
+    for (const std::string name : {"scene", "seed"})
+      if (item.starts_with(name + "=")) metadata["castray:" + name] = item.substr(name.size() + 1);
   std::uint64_t spp = 0;
   for (const SampleRange& range : film.samples) spp += range.count;
-  metadata["spp"] = std::to_string(spp);
+  metadata["castray:spp"] = std::to_string(spp);
   return metadata;
 }
 

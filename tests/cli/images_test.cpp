@@ -121,7 +121,7 @@ TEST_CASE("merge gives the bytes of the whole film in any order, and pictures to
   CHECK(read_file(files.folder / "m.film") == read_file(files.folder / "whole.film"));
   CHECK(files.run({"merge", "4.film", "0.film", "-o", "m.film"}).exit_code == 0);
   CHECK(read_file(files.folder / "m.film") == read_file(files.folder / "whole.film"));
-  CHECK(read_image(files.folder / "m.exr").metadata.at("spp") == "7");
+  CHECK(read_image(files.folder / "m.exr").metadata.at("castray:spp") == "7");
   CHECK(files.run({"compare", "m.exr", "whole.film", "--max", "max_error=0"}).exit_code == 0);
 }
 
