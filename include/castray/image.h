@@ -79,9 +79,15 @@ Image decoded(const ImageFile& file, const ToneCurve& tone);
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display = {},
                  const Metadata& metadata = {});
 
+/// The bytes of a PNG file.
+std::string encode_png(const Image& image, const Display& display = {}, const Metadata& metadata = {});
+
 /// Throws InputError if an image or film could not be written to `file`: an unknown suffix (the message lists
 /// the known ones), a missing folder, a write-protected target, ... To be asked before work starts.
 void check_output_image(const std::filesystem::path& file);
+
+/// Whether the suffix is that of a format that can be read.
+bool is_image_format(const std::filesystem::path& file);
 
 /// Whether the suffix is that of a format of 8 bits, which `Display` shapes.
 bool is_8bit_format(const std::filesystem::path& file);

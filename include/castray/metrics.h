@@ -28,6 +28,9 @@ struct ErrorMetrics {
 /// either is not finite, with the pixel.
 ErrorMetrics measure_errors(const Image& image, const Image& reference, double peak);
 
+/// How many percent of the pixels have a channel with |x-r| > bound.
+double percent_beyond(const Image& image, const Image& reference, double bound);
+
 /// The greatest component of an image, 1 where none is positive: the peak of psnr for radiance.
 double greatest_component(const Image& image);
 

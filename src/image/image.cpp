@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "castray/error.h"
 #include "castray/film.h"
@@ -57,15 +58,21 @@ constexpr Format formats[] = {
     {".film", false, read_film_image, nullptr},
 };
 
-const Format& format_of(const std::filesystem::path& file) {
+/// Null where the suffix is unknown.
+const Format* find_format(const std::filesystem::path& file) {
   std::string suffix = file.extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto* found = std::find_if(std::begin(formats), std::end(formats),
+                                   [&](const Format& f) { return suffix == f.suffix; });
+  return found == std::end(formats) ? nullptr : found;
+}
+
+const Format& format_of(const std::filesystem::path& file) {
+  if (const Format* format = find_format(file)) return *format;
+  const std::string suffix = file.extension().string();
   std::string known;
-  for (const Format& format : formats) {
-    if (suffix == format.suffix) return format;
-    known += std::string(known.empty() ? "" : " ") + format.suffix;
-  }
+  for (const Format& format : formats) known += std::string(known.empty() ? "" : " ") + format.suffix;
   throw InputError(
       {file.string()},
       (suffix.empty() ? "has no suffix" : "unknown image format '" + suffix + "'") + "; known are " + known);
@@ -100,11 +107,18 @@ void write_image(const std::filesystem::path& file, const Image& image, const Di
   write_file(file, [&](std::ostream& out) { format.write(out, image, display, metadata); });
 }
 
+std::string encode_png(const Image& image, const Display& display, const Metadata& metadata) {
+  std::ostringstream out;
+  write_png(out, quantised(image, display), metadata);
+  return std::move(out).str();
+}
+
 void check_output_image(const std::filesystem::path& file) {
   check_writable(file);
   format_of(file);
 }
 
+bool is_image_format(const std::filesystem::path& file) { return find_format(file); }
 bool is_8bit_format(const std::filesystem::path& file) { return format_of(file).is_8bit; }
 bool is_film_format(const std::filesystem::path& file) { return !format_of(file).write; }
 

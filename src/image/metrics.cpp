@@ -33,6 +33,15 @@ double greatest_component(const Image& image) {
   return greatest > 0 ? greatest : 1;
 }
 
+double percent_beyond(const Image& image, const Image& reference, double bound) {
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const Vec3d difference = Vec3d(image.pixels[i]) - Vec3d(reference.pixels[i]);
+    beyond += std::max({std::abs(difference.x), std::abs(difference.y), std::abs(difference.z)}) > bound;
+  }
+  return 100 * static_cast<double>(beyond) / static_cast<double>(image.pixels.size());
+}
+
 ErrorMetrics measure_errors(const Image& image, const Image& reference, double peak) {
   if (image.width != reference.width || image.height != reference.height)
     throw InputError(fmt::format("the sizes differ: the image is {}x{}, the reference {}x{}", image.width,
