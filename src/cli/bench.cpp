@@ -12,6 +12,7 @@
 #include "cli/peer.h"
 #include "cli/process.h"
 #include "cli/scene_bench.h"
+#include "cli/shell_word.h"
 #include "core/files.h"
 #include "core/threads.h"
 

@@ -20,6 +20,7 @@ constexpr Subcommand subcommands[] = {
     // in the order of use: render, compare, bench, info, merge, convert
     {"render", "render a scene to an image", add_render},
     {"compare", "measure how an image differs from its reference", add_compare},
+    {"accept", "make an image the reference", add_accept},
     {"bench", "time against error, of castray and of other renderers", add_bench},
     {"info", "what a scene holds, what it needs, warnings", add_info},
     {"merge", "add films of disjoint sample ranges", add_merge},

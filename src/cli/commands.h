@@ -14,6 +14,7 @@ using Run = std::function<int()>;
 // Each declares its flags on `app` and returns what runs it.
 Run add_render(CLI::App& app);
 Run add_compare(CLI::App& app);
+Run add_accept(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_merge(CLI::App& app);
 Run add_convert(CLI::App& app);

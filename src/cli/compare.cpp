@@ -8,6 +8,7 @@
 #include "castray/error.h"
 #include "cli/commands.h"
 #include "cli/compare_report.h"
+#include "cli/image_folder.h"
 #include "cli/shell_word.h"
 #include "core/files.h"
 
@@ -16,15 +17,6 @@ namespace castray::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The image files in and below a folder, relative to it.
-std::set<std::string> images_below(const fs::path& folder) {
-  std::set<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file() && is_image_format(entry.path()))
-      names.insert(fs::relative(entry.path(), folder).generic_string());
-  return names;
-}
 
 struct Compare {
   fs::path image, reference;
@@ -37,7 +29,10 @@ struct Compare {
   int run() const {
     const LimitsFile limits = all_limits();
     flags.display();
-    const bool folders = fs::is_directory(image) && fs::is_directory(reference);
+    const bool folders = fs::is_directory(image);
+    if (folders != fs::is_directory(reference))
+      throw InputError({(folders ? image : reference).string()},
+                       "is a folder, and the other is not; give two of a kind");
     if (folders && !heat_map_file.empty())
       throw InputError("--heatmap: draws one pair of images; use --html for folders");
     for (const fs::path& output : {json, junit, html})
@@ -61,8 +56,8 @@ struct Compare {
     LimitsFile file;
     if (!limits_file.empty()) file = read_limits(limits_file);
     Limits given;
-    for (const std::string& text : greatest) given.greatest.insert(parse_bound("--max", text));
-    for (const std::string& text : least) given.least.insert(parse_bound("--min", text));
+    for (const std::string& text : greatest) add_bound(given.greatest, "--max", text);
+    for (const std::string& text : least) add_bound(given.least, "--min", text);
     if (!allowance.empty()) given.pixels = parse_allowance("--allow-pixels", allowance);
     if (ztest) given.ztest = checked_rate("--ztest", *ztest);
     file.all = file.all.overridden_by(given);
@@ -80,7 +75,6 @@ struct Compare {
   std::vector<Comparison> compare_folders(const LimitsFile& limits) const {
     std::set<std::string> names = images_below(reference);
     names.merge(images_below(image));
-    if (names.empty()) throw InputError({reference.string()}, "holds no images");
     std::vector<Comparison> comparisons;
     for (const std::string& name : names) {
       comparisons.push_back(compare_files(name, image / name, reference / name, limits.of(name), flags));

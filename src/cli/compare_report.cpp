@@ -12,7 +12,7 @@ std::string metric_detail(const ErrorMetrics& errors, const std::string& metric)
   if (metric == "psnr") return fmt::format("dB, peak {:.6g}", errors.peak);
   if (metric == "max_error") return fmt::format("at pixel ({},{})", errors.max_x, errors.max_y);
   if (metric == "bias")
-    return fmt::format("red {:+.6g}, green {:+.6g}, blue {:+.6g}", bias.x, bias.y, bias.z);
+    return fmt::format("red {:+.4g}, green {:+.4g}, blue {:+.4g}", bias.x, bias.y, bias.z);
   return "";
 }
 

@@ -8,6 +8,7 @@
 #include "castray/error.h"
 #include "cli/process.h"
 #include "cli/render_flags.h"
+#include "cli/shell_word.h"
 #include "cli/temporary_folder.h"
 #include "core/nearest.h"
 

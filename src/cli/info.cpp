@@ -7,8 +7,10 @@
 #include <set>
 #include <string>
 
+#include "castray/image.h"
 #include "castray/scene.h"
 #include "cli/commands.h"
+#include "cli/image_info.h"
 #include "core/text.h"
 
 namespace castray::cli {
@@ -104,8 +106,12 @@ int print_info(const std::string& file) {
 
 Run add_info(CLI::App& app) {
   const auto file = std::make_shared<std::string>();
-  app.add_option("SCENE", *file, "scene .json or .obj")->required();
-  return [file] { return print_info(*file); };
+  app.add_option("SCENE", *file, "scene .json or .obj; or an image or film")->required();
+  return [file] {
+    if (!is_image_format(*file)) return print_info(*file);
+    print_image_info(*file);
+    return 0;
+  };
 }
 
 }  // namespace castray::cli

@@ -81,7 +81,7 @@ Limits Limits::overridden_by(const Limits& other) const {
   return result;
 }
 
-std::pair<std::string, double> parse_bound(const std::string& where, const std::string& text) {
+void add_bound(std::map<std::string, double>& bounds, const std::string& where, const std::string& text) {
   const std::size_t equals = std::min(text.find('='), text.size());
   const std::string name = text.substr(0, equals);
   check_metric(where, name);
@@ -89,7 +89,7 @@ std::pair<std::string, double> parse_bound(const std::string& where, const std::
       number(std::string_view(text).substr(std::min(equals + 1, text.size())));
   if (!value)
     throw InputError(where + " " + printable(text) + ": give METRIC=VALUE, as in " + name + "=0.01");
-  return {name, *value};
+  bounds[name] = *value;
 }
 
 PixelAllowance parse_allowance(const std::string& where, const std::string& text) {

@@ -23,9 +23,9 @@ struct Limits {
   Limits overridden_by(const Limits& other) const;
 };
 
-/// "METRIC=VALUE", as of --max or --min. Each of these throws InputError with `where` in front: the flag or
-/// place that the text comes from.
-std::pair<std::string, double> parse_bound(const std::string& where, const std::string& text);
+/// Adds "METRIC=VALUE", as of --max or --min; a later one replaces an earlier one. Each of these throws
+/// InputError with `where` in front: the flag or place that the text comes from.
+void add_bound(std::map<std::string, double>& bounds, const std::string& where, const std::string& text);
 /// "PERCENT:BOUND".
 PixelAllowance parse_allowance(const std::string& where, const std::string& text);
 double checked_rate(const std::string& where, double rate);

@@ -7,6 +7,7 @@
 
 #include "castray/error.h"
 #include "cli/process.h"
+#include "cli/shell_word.h"
 #include "cli/temporary_folder.h"
 
 namespace castray::cli {

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "castray/error.h"
+#include "cli/shell_word.h"
 #include "cli/temporary_folder.h"
 #include "core/files.h"
 
@@ -40,12 +41,6 @@ ProcessResult run_command(const std::string& command) {
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.last_error = last_line(read_file(errors));
   return result;
-}
-
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
 }
 
 }  // namespace castray::cli

@@ -15,7 +15,4 @@ struct ProcessResult {
 /// Runs `command` by the shell and waits for it.
 ProcessResult run_command(const std::string& command);
 
-/// `text` as one word of a shell command.
-std::string shell_word(const std::string& text);
-
 }  // namespace castray::cli

@@ -5,8 +5,8 @@
 
 namespace castray {
 
-/// `text` as it may stand in a one-line message: control characters as '?', cut after 80 bytes.
-std::string printable(std::string_view text);
+/// `text` as it may stand in a one-line message: control characters as '?', cut after `longest` bytes.
+std::string printable(std::string_view text, std::size_t longest = 80);
 
 /// `text` without a UTF-8 byte order mark in front.
 std::string_view without_bom(std::string_view text);

@@ -85,7 +85,7 @@ TEST_CASE("what cannot be compared, converted or merged is one line and exit cod
       {{"compare", "nan.pfm", "a.pfm"}, "pixel (7,2) of the image is not finite"},
       {{"compare", "a.png", "nan.pfm", "--tone", "srgb"}, "pixel (7,2) of the reference is not finite"},
       {{"compare", "absent.pfm", "a.pfm"}, "absent.pfm: cannot be read: No such file"},
-      {{"compare", ".", "a.pfm"}, "known are"},
+      {{"compare", ".", "a.pfm"}, "is a folder"},
       {{"compare", "a.pfm"}, "REFERENCE"},
       {{"compare", "a.pfm", "b.pfm", "--max", "mze=1"}, "did you mean 'mse'"},
       {{"compare", "a.pfm", "b.pfm", "--max", "mse"}, "METRIC=VALUE"},
@@ -137,4 +137,99 @@ TEST_CASE("convert keeps what the target can hold") {
   CHECK(with_nan.exit_code == 0);
   CHECK_THAT(with_nan.err, Contains("n.png: 1 pixels are not finite; NaN is shown black"));
   CHECK(read_image(files.folder / "n.png").image.at(7, 2).x == 0);
+}
+
+TEST_CASE("folders are compared image by image, under the limits of a file, with reports") {
+  const Files files;
+  const auto& folder = files.folder;
+  for (const char* side : {"image/sub", "reference/sub"}) std::filesystem::create_directories(folder / side);
+  write_file(folder / "image/a.pfm", read_file(folder / "b.pfm"));
+  write_file(folder / "reference/a.pfm", read_file(folder / "a.pfm"));
+  for (const char* side : {"image/sub/p.png", "reference/sub/p.png"})
+    write_file(folder / side, read_file(folder / "a.png"));
+  write_file(folder / "limits.json",
+             R"({"max": {"mse": 0}, // strict
+                 "images": {"a.pfm": {"max": {"mse": 1}, "allow-pixels": "1.1:0.4"}}})");
+  const std::vector<std::string> compare = {"compare", "image", "reference", "--limits", "limits.json"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), compare.begin(), compare.end());
+    return files.run(more);
+  };
+  CHECK(with({}).exit_code == 0);
+  CHECK(with({"--allow-pixels", "1:0.4"}).exit_code == 1);  // one pixel of 96 is 1.04 %
+  const RunResult strict =
+      with({"--max", "max_error=0.1", "--json", "r.json", "--junit", "r.xml", "--html", "r.html"});
+  CHECK(strict.exit_code == 1);
+  CHECK_THAT(strict.out,
+             Contains("FAIL  a.pfm") && Contains("pass  sub/p.png") && Contains("1 of 2 images pass"));
+  const auto json = nlohmann::json::parse(read_file(folder / "r.json"));
+  CHECK(json["pass"] == false);
+  CHECK(json["comparisons"][0]["name"] == "a.pfm");
+  CHECK(json["comparisons"][0]["allow_pixels"]["found_percent"] == Approx(100.0 / 96));
+  CHECK(json["comparisons"][1]["metrics"]["ssim"] == 1);
+  CHECK(json["comparisons"][1]["metrics"].count("flip_hdr") == 0);
+  CHECK_THAT(read_file(folder / "r.xml"),
+             Contains("tests=\"2\" failures=\"1\" errors=\"0\"") &&
+                 Contains("<failure message=\"max_error is 0.5, allowed at most 0.1\">"));
+  const std::string page = read_file(folder / "r.html");
+  CHECK_THAT(page, Contains("castray accept image/a.pfm reference/a.pfm") && !Contains("http://") &&
+                       !Contains("https://"));
+  CHECK(page.find("\"name\":\"a.pfm\"") < page.find("\"name\":\"sub/p.png\""));
+
+  write_file(folder / "reference/gone.pfm", read_file(folder / "a.pfm"));
+  const RunResult missing = with({"--junit", "r.xml"});
+  CHECK(missing.exit_code == 2);
+  CHECK_THAT(missing.out, Contains("ERROR gone.pfm"));
+  CHECK_THAT(read_file(folder / "r.xml"), Contains("<error message=\"image/gone.pfm: cannot be read"));
+}
+
+TEST_CASE("accept puts images in the place of their references") {
+  const Files files;
+  CHECK(files.run({"accept", "b.pfm", "a.pfm"}).exit_code == 0);
+  CHECK(read_file(files.folder / "a.pfm") == read_file(files.folder / "b.pfm"));
+  CHECK_THAT(files.run({"accept", "b.pfm", "a.pfm"}).out, Contains("same"));
+  CHECK(files.run({"accept", "b.pfm", "a.png"}).exit_code == 2);
+  write_file(files.folder / "broken.pfm", "PF");
+  CHECK(files.run({"accept", "broken.pfm", "a.pfm"}).exit_code == 2);
+  CHECK(read_file(files.folder / "a.pfm") == read_file(files.folder / "b.pfm"));
+}
+
+TEST_CASE("limits that cannot be are refused with their place") {
+  const Files files;
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"{", "limits.json: "},
+      {"[]", "limits.json: must be an object"},
+      {R"({"maxx": {}})", "unknown key 'maxx'; did you mean 'max'"},
+      {R"({"max": {"mze": 1}})", "there is no metric 'mze'; did you mean 'mse'"},
+      {R"({"max": {"mse": "x"}})", "max.mse: must be a number"},
+      {R"({"images": {"a.pfm": {"ztest": 2}}})", "a.pfm: ztest: 2 is not a false-alarm rate"},
+      {R"({"allow-pixels": "1"})", "give PERCENT:BOUND"},
+  };
+  for (const auto& [text, says] : bad) {
+    write_file(files.folder / "limits.json", text);
+    const RunResult result = files.run({"compare", "a.pfm", "a.pfm", "--limits", "limits.json"});
+    INFO(text);
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.err, Contains(says));
+    CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  }
+  CHECK(files.run({"compare", "a.pfm", "a.pfm", "--min", "ssim=1", "--max", "flip=0"}).exit_code == 0);
+  CHECK(files.run({"compare", "b.pfm", "a.pfm", "--min", "ssim=1"}).exit_code == 1);
+  CHECK_THAT(files.run({"compare", "a.png", "a.png", "--max", "flip_hdr=1"}).err,
+             Contains("no flip_hdr of encoded"));
+  CHECK_THAT(files.run({"compare", "a.pfm", "a.pfm", "--ztest", "0.01"}).err,
+             Contains("does not tell its noise"));
+  CHECK_THAT(files.run({"compare", ".", "a.pfm"}).err, Contains("is a folder, and the other is not"));
+}
+
+TEST_CASE("info shows what images and films hold") {
+  const Files files;
+  write_image(files.folder / "m.png", test_image(12, 8), {},
+              {{"castray:scene", "box"}, {"castray:seconds", "1.5"}});
+  CHECK_THAT(files.run({"info", "m.png"}).out, Contains("12 x 8") && Contains("castray:scene box") &&
+                                                   Contains("castray:seconds 1.5") && Contains("encoded"));
+  CHECK_THAT(files.run({"info", "whole.film"}).out,
+             Contains("samples    0:7") && Contains("scene=test; seed=0"));
+  CHECK_THAT(files.run({"info", "nan.pfm"}).out,
+             Contains("1 pixels are not finite") && Contains("linear radiance"));
 }

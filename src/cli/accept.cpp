@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "castray/error.h"
+#include "castray/image.h"
+#include "cli/commands.h"
+#include "cli/image_folder.h"
+#include "core/files.h"
+
+namespace castray::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Puts `image` in the place of `reference`, byte for byte, once it is known to be one that can be read.
+void accept_file(const fs::path& image, const fs::path& reference) {
+  if (image.extension() != reference.extension())
+    throw InputError({reference.string()},
+                     "has another suffix than " + image.string() + "; convert the image first");
+  read_image(image);
+  const std::string bytes = read_file(image);
+  std::error_code ignored;
+  if (fs::exists(reference, ignored) && read_file(reference) == bytes) {
+    fmt::print("same      {}\n", reference.string());
+    return;
+  }
+  const bool is_new = !fs::exists(reference, ignored);
+  write_file(reference, bytes);
+  fmt::print("{}  {}\n", is_new ? "new     " : "replaced", reference.string());
+}
+
+int accept(const fs::path& image, const fs::path& reference) {
+  if (!fs::is_directory(image)) {
+    accept_file(image, reference);
+    return 0;
+  }
+  if (!fs::is_directory(reference)) throw InputError({reference.string()}, "is not a folder, but IMAGE is");
+  for (const std::string& name : images_below(image)) {
+    fs::create_directories((reference / name).parent_path());
+    accept_file(image / name, reference / name);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Run add_accept(CLI::App& app) {
+  struct Files {
+    fs::path image, reference;
+  };
+  auto files = std::make_shared<Files>();
+  app.add_option("IMAGE", files->image, "an image or film, or a folder of them")->required();
+  app.add_option("REFERENCE", files->reference, "the file or folder that it shall replace")->required();
+  return [files] { return accept(files->image, files->reference); };
+}
+
+}  // namespace castray::cli

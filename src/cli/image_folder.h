@@ -1,0 +1,12 @@
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace castray::cli {
+
+/// The image files in and below a folder, by their paths from it. Throws InputError if there are none.
+std::set<std::string> images_below(const std::filesystem::path& folder);
+
+}  // namespace castray::cli

@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Drives the web page of `castray compare --html` in headless Chromium: compare_page.py CASTRAY [SCREENSHOT_FOLDER]."""
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+from playwright.sync_api import sync_playwright
+
+WIDTH, HEIGHT = 60, 40
+
+
+def write_pfm(path, pixel):
+    rows = [struct.pack("<3f", *pixel(x, y)) for y in range(HEIGHT - 1, -1, -1) for x in range(WIDTH)]
+    path.write_bytes(f"PF\n{WIDTH} {HEIGHT}\n-1.0\n".encode() + b"".join(rows))
+
+
+def make_page(castray, folder):
+    """Three images: 'a' equal, 'm' different, 'z' without an image; the page must show m and z before a."""
+    for side in ("image", "reference"):
+        (folder / side).mkdir()
+        write_pfm(folder / side / "a.pfm", lambda x, y: (0.2, 0.4, 0.6))
+    write_pfm(folder / "image" / "m.pfm", lambda x, y: (1.0 + 0.001 * x, 0.0, 0.0))
+    write_pfm(folder / "reference" / "m.pfm", lambda x, y: (0.0, 0.0, 0.25))
+    write_pfm(folder / "reference" / "z.pfm", lambda x, y: (0.5, 0.5, 0.5))
+    page = folder / "page.html"
+    run = subprocess.run(
+        [castray, "compare", "image", "reference", "--max", "mse=1e-6", "--html", page.name], cwd=folder, check=False
+    )
+    assert run.returncode == 2, run.returncode
+    return page
+
+
+def colour(page, x, y):
+    return page.evaluate(
+        "([x, y]) => [...document.querySelector('canvas').getContext('2d').getImageData(x, y, 1, 1).data]", [x, y]
+    )
+
+
+def set_slider(page, name, value):
+    page.locator(f"[data-slider={name}]").first.evaluate(
+        "(input, value) => { input.value = value; input.dispatchEvent(new Event('input')); }", value
+    )
+
+
+def check_order(page):
+    names = page.locator("h2").all_inner_texts()
+    assert names == ["m.pfm", "z.pfm", "a.pfm"], names
+    assert page.locator("details").nth(0).get_attribute("open") is not None
+    assert page.locator("details").nth(2).get_attribute("open") is None
+    assert "1 differ, 1 cannot be compared, 1 pass" in page.inner_text("#summary")
+
+
+def check_swipe(page):
+    assert colour(page, 10, 5)[0] == 255 and colour(page, 50, 5)[0] == 0  # image left, reference right
+    set_slider(page, "swipe", 10)
+    assert colour(page, 10, 5)[0] == 0
+    page.locator(".stage").first.focus()
+    for _ in range(45):
+        page.keyboard.press("ArrowRight")
+    assert colour(page, 50, 5)[0] == 255
+    box = page.locator("canvas").first.bounding_box()
+    page.mouse.click(box["x"] + box["width"] * 0.25, box["y"] + 20)
+    assert colour(page, 10, 5)[0] == 255 and colour(page, 50, 5)[0] == 0
+
+
+def check_flip(page):
+    page.mouse.move(2, 2)
+    page.keyboard.press("2")
+    assert colour(page, 50, 5)[0] == 255
+    page.locator("canvas").first.hover()
+    assert colour(page, 50, 5)[:3] == [0, 0, 137]
+    page.mouse.move(2, 2)
+    assert colour(page, 50, 5)[0] == 255
+    page.keyboard.press(" ")
+    assert colour(page, 50, 5)[0] == 0
+    page.keyboard.press(" ")
+
+
+def check_values_and_zoom(page):
+    before = page.locator("canvas").first.bounding_box()
+    page.keyboard.press("+")
+    after = page.locator("canvas").first.bounding_box()
+    assert abs(after["width"] - 2 * before["width"]) < 1
+    page.keyboard.press("-")
+    scale = before["width"] / WIDTH
+    page.locator("canvas").first.hover(position={"x": 30.5 * scale, "y": 7.5 * scale})
+    text = page.locator(".values").first.inner_text()
+    assert "(30,7)" in text and "1.030" in text and "0.2500" in text and "-0.2500" in text, text
+
+
+def check_exposure(page):
+    page.keyboard.press("2")
+    page.mouse.move(2, 2)
+    set_slider(page, "exposure", -2)
+    assert abs(colour(page, 0, 5)[0] - 137) <= 1  # 1/4 of full, by the sRGB curve
+    page.keyboard.press("e")
+    assert abs(colour(page, 0, 5)[0] - 159) <= 30 and colour(page, 0, 5)[0] > 140
+    set_slider(page, "exposure", 0)
+
+
+def check_heat_map(page):
+    page.keyboard.press("3")
+    heat = page.locator("img").first
+    assert heat.is_visible() and not page.locator("canvas").first.is_visible()
+    assert heat.evaluate("image => image.naturalHeight") > HEIGHT  # the colour bar is below
+    page.keyboard.press("1")
+
+
+def check_rest(page):
+    page.keyboard.press("j")  # z.pfm, which has no picture
+    page.locator("summary").nth(2).click()
+    page.wait_for_selector("details:nth-of-type(3) [data-ready=yes]")
+    commands = page.locator(".command code").all_inner_texts()
+    assert "castray accept image/m.pfm reference/m.pfm" in commands, commands
+    row = page.locator("tr.exceeds").first.inner_text()
+    assert row.startswith("mse") and "<= 1e-06" in row, row
+
+
+def check_narrow(page):
+    overflow = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    assert overflow <= 0, f"the page is {overflow} pixels wider than the screen"
+    for button in page.locator("button").all():
+        assert not button.is_visible() or button.bounding_box()["height"] >= 36
+
+
+def luminance(css):
+    r, g, b = (int(v) for v in css[css.index("(") + 1 : css.index(")")].split(",")[:3])
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+
+def main():
+    castray = str(pathlib.Path(sys.argv[1]).resolve())
+    pictures = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else None
+    with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
+        address = make_page(castray, pathlib.Path(name)).as_uri()
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        problems = []
+        for kind, size, scheme in [("desktop", (1280, 900), "light"), ("phone", (390, 844), "light"),
+                                   ("dark", (1280, 900), "dark")]:
+            context = browser.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme,
+                                          offline=True)
+            page = context.new_page()
+            page.on("pageerror", lambda error: problems.append(str(error)))
+            page.on("console", lambda message: message.type == "error" and problems.append(message.text))
+            page.on("request", lambda request: request.url.startswith(("file:", "data:", "blob:"))
+                    or problems.append(request.url))
+            page.goto(address)
+            page.wait_for_selector("[data-ready=yes]")
+            if pictures:
+                page.screenshot(path=pictures / f"{kind}.png", full_page=kind == "phone")
+            check_order(page)
+            check_narrow(page)
+            if kind == "desktop":
+                for check in (check_swipe, check_flip, check_values_and_zoom, check_exposure, check_heat_map, check_rest):
+                    check(page)
+            body = page.evaluate("(s => [s.backgroundColor, s.color])(getComputedStyle(document.body))")
+            paper, ink = (luminance(css) for css in body)
+            assert (paper < 60 and ink > 180) if scheme == "dark" else (paper > 200 and ink < 60)
+        assert not problems, problems
+    print("the page works")
+
+
+if __name__ == "__main__":
+    main()
