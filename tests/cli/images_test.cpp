@@ -49,7 +49,7 @@ TEST_CASE("compare exits with 0 within the limits, 1 if not, and writes what it 
   const RunResult different = files.run({"compare", "b.pfm", "a.pfm", "--max", "mse=1", "--max", "mae=0.001",
                                          "--json", "r.json", "--heatmap", "h.png"});
   CHECK(different.exit_code == 1);
-  CHECK_THAT(different.out, Contains("EXCEEDS 0.001") && Contains("at pixel (3,5)"));
+  CHECK_THAT(different.out, Contains("EXCEEDS <= 0.001") && Contains("at pixel (3,5)"));
   CHECK(different.err.empty());
   const auto json = nlohmann::json::parse(read_file(files.folder / "r.json"));
   CHECK(json["pass"] == false);
