@@ -12,8 +12,9 @@ import peer
 
 def options(parser):
     parser.add_argument("--variant", default="llvm_ad_rgb", help="llvm_ad_rgb, scalar_rgb")
-    parser.add_argument("--sampler", default="multijitter",
-                        help="independent, stratified, multijitter, orthogonal, ldsampler")
+    parser.add_argument("--sampler", default="auto",
+                        help="independent, stratified, multijitter, orthogonal, ldsampler; auto: the best as measured, "
+                        "ldsampler for scenes with conductors, else multijitter")
 
 
 def bsdf(material):
@@ -55,6 +56,8 @@ def write_ply(path, mesh):
 
 
 def scene_dictionary(mi, scene, arguments, folder):
+    glossy = any(mesh.material.type == "conductor" for mesh in scene.meshes)
+    sampler = arguments.sampler if arguments.sampler != "auto" else "ldsampler" if glossy else "multijitter"
     result = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": -1},
@@ -64,7 +67,7 @@ def scene_dictionary(mi, scene, arguments, folder):
                                                        up=scene.up.tolist()),
             "film": {"type": "hdrfilm", "width": scene.width, "height": scene.height, "pixel_format": "rgb",
                      "component_format": "float32", "rfilter": {"type": "box"}},
-            "sampler": {"type": arguments.sampler, "sample_count": arguments.spp},
+            "sampler": {"type": sampler, "sample_count": arguments.spp},
         },
     }
     if max(scene.environment) > 0:
