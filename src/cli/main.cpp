@@ -2,12 +2,14 @@
 
 #include <exception>
 #include <new>
+#include <string>
 
 #include "cli/command_line.h"
+#include "core/text.h"
 
 int main(int argc, char** argv) {
   const auto fail = [](const char* message) {
-    fmt::print(stderr, "castray: error: {}\n", message);
+    fmt::print(stderr, "castray: error: {}\n", castray::printable(message, std::string::npos));
     return 2;
   };
   try {

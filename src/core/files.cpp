@@ -23,6 +23,14 @@ namespace {
 
 std::string reason(int error) { return error ? std::strerror(error) : "unknown error"; }
 
+/// Bytes that are read of what has no length of its own, a pipe or a device.
+constexpr std::size_t longest_stream = 1 << 28;
+
+std::uintmax_t memory_size() {
+  return static_cast<std::uintmax_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uintmax_t>(sysconf(_SC_PAGESIZE));
+}
+
 /// The file that a chain of symbolic links ends in; it need not exist.
 fs::path link_target(const fs::path& file) {
   std::error_code ignored;
@@ -101,10 +109,15 @@ std::string read_file(const fs::path& file) {
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) fail(file, "cannot be read: " + reason(errno));
+  const std::uintmax_t length = fs::is_regular_file(file, ignored) ? fs::file_size(file, ignored) : 0;
+  if (length > memory_size()) fail(file, "is longer than this machine's memory");
   std::string bytes;
+  bytes.reserve(length);
   char block[1 << 16];
-  while (in.read(block, sizeof block) || in.gcount() > 0)
+  while (in.read(block, sizeof block) || in.gcount() > 0) {
     bytes.append(block, static_cast<std::size_t>(in.gcount()));
+    if (length == 0 && bytes.size() > longest_stream) fail(file, "does not end; give a regular file");
+  }
   if (in.bad()) fail(file, "cannot be read: " + reason(errno));
   return bytes;
 }

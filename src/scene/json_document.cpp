@@ -74,15 +74,16 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
       const std::size_t found = what.find(prefix_end);
       if (found != std::string::npos) what.erase(0, found + 2);
     }
-    constexpr std::size_t longest = 200;
-    if (what.size() > longest) what = what.substr(0, longest) + "...";
     std::replace_if(
         what.begin(), what.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
-    throw InputError(places_.at(position > 0 ? position - 1 : 0), "not valid JSON: " + what);
+    throw InputError(places_.at(position > 0 ? position - 1 : 0), "not valid JSON: " + printable(what, 200));
   }
 
  private:
   using Type = JsonNode::Type;
+
+  // More than any scene has; bounds the memory.
+  static constexpr int most_values = 1'000'000;
 
   // Deeper than any scene; the tree is walked and destroyed by recursion.
   static constexpr std::size_t greatest_depth = 64;
@@ -125,6 +126,8 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
 
   bool add(JsonNode node) {
     node.place = next_token();
+    if (++values_ > most_values)
+      throw InputError(node.place, "more than " + std::to_string(most_values) + " values; is this a scene?");
     if (open_.empty()) {
       root = std::move(node);
       return true;
@@ -164,6 +167,7 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
   std::string_view text_;
   PlaceCounter places_;
   std::size_t cursor_ = 0, token_begin_ = 0;
+  int values_ = 0;
   std::vector<JsonNode*> open_;              ///< a parent's children do not move while one of them is open
   std::vector<std::set<std::string>> keys_;  ///< so far, of each open value
   std::string key_;

@@ -119,6 +119,8 @@ class MtlReader {
   void begin_material() {
     const std::string name(lines_.rest());
     if (name.empty()) lines_.fail("newmtl needs a name");
+    if (materials_.size() > std::numeric_limits<std::uint16_t>::max())
+      lines_.fail("too many materials; use fewer");
     materials_.push_back({.name = name});
   }
 

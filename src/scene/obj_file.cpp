@@ -22,6 +22,9 @@ struct Corner {
 };
 
 class ObjReader {
+  static constexpr std::size_t most_corners =
+      1 << 20;  ///< of a face: bounds what one line can make of memory and time
+
  public:
   ObjReader(std::string_view text, const std::filesystem::path& file, const ObjOptions& options,
             SceneBuilder& builder)
@@ -110,8 +113,11 @@ class ObjReader {
 
   void read_face() {
     corners_.clear();
-    for (std::string_view text = lines_.word(); !text.empty(); text = lines_.word())
+    for (std::string_view text = lines_.word(); !text.empty(); text = lines_.word()) {
       corners_.push_back(read_corner(text));
+      if (corners_.size() > most_corners)
+        lines_.fail(fmt::format("a face of more than {} corners; cut it into smaller ones", most_corners));
+    }
     if (corners_.size() < 3)
       lines_.fail(fmt::format("a face needs at least 3 corners, but has {}", corners_.size()));
     cuts_.clear();
