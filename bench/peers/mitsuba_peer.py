@@ -90,6 +90,7 @@ def main():
         os.environ.setdefault("DRJIT_LIBLLVM_PATH", "/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1")
     import mitsuba as mi
     mi.set_variant(arguments.variant)
+    mi.set_log_level(mi.LogLevel.Error)  # its warnings, of rounded sample counts, go to stdout
     with tempfile.TemporaryDirectory() as folder:
         loaded = mi.load_dict(scene_dictionary(mi, scene, arguments, folder))
 
