@@ -61,12 +61,13 @@ double median_build(const std::vector<float>& soup, const Options& options, int 
   return median(seconds);
 }
 
-RTCRay ray_at(const RaySet& rays, std::size_t i) {
-  const auto& n = rays.number;
-  return {n[0][i], n[1][i], n[2][i], 0, n[3][i], n[4][i], n[5][i], 0, n[6][i], ~0u, 0, 0};
+RTCRay ray_at(const RayArrays& rays, std::size_t i) {
+  const Ray<float> ray = rays[i];
+  const auto &o = ray.origin, &d = ray.direction;
+  return {o.x, o.y, o.z, 0, d.x, d.y, d.z, 0, ray.t_max, ~0u, 0, 0};
 }
 
-void trace(RTCScene scene, const RaySet& rays, bool any, std::size_t first, std::size_t last,
+void trace(RTCScene scene, const RayArrays& rays, bool any, std::size_t first, std::size_t last,
            RayResult* out) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -88,7 +89,7 @@ void trace(RTCScene scene, const RaySet& rays, bool any, std::size_t first, std:
 
 void measure(const Options& options) {
   const std::vector<float> soup = read_floats(options.mesh, 9);
-  const RaySet rays = read_rays(options.rays);
+  const RayArrays rays = read_rays(options.rays);
   const double build1 = median_build(soup, options, 1), build2 = median_build(soup, options, 2);
   const Device device = make_device(options.threads);
   const Scene scene = make_scene(device.get(), soup, options);

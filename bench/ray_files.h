@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "accel/ray_arrays.h"
 #include "castray/error.h"
 #include "core/files.h"
 
@@ -29,23 +30,12 @@ inline std::vector<float> read_floats(const std::filesystem::path& file, std::si
   return floats;
 }
 
-/// Rays, each number of all of them side by side: ox oy oz dx dy dz t_max.
-struct RaySet {
-  std::vector<float> number[7];
-
-  std::size_t size() const { return number[0].size(); }
-  void add(const float (&ray)[7]) {
-    for (int i = 0; i < 7; ++i) number[i].push_back(ray[i]);
-  }
-};
-
-inline RaySet read_rays(const std::filesystem::path& file) {
-  const std::vector<float> floats = read_floats(file, 7);
-  RaySet rays;
-  for (std::size_t i = 0; i < floats.size(); i += 7) {
-    float ray[7];
-    std::copy_n(floats.begin() + static_cast<std::ptrdiff_t>(i), 7, ray);
-    rays.add(ray);
+/// A file of ox oy oz dx dy dz t_max for each ray.
+inline RayArrays read_rays(const std::filesystem::path& file) {
+  const std::vector<float> n = read_floats(file, 7);
+  RayArrays rays;
+  for (std::size_t i = 0; i < n.size(); i += 7) {
+    rays.add({{n[i], n[i + 1], n[i + 2]}, {n[i + 3], n[i + 4], n[i + 5]}, n[i + 6]});
   }
   return rays;
 }

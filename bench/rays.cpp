@@ -4,15 +4,13 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <ostream>
 
-#include "accel/bvh.h"
-#include "accel/list.h"
 #include "accel/wide_bvh.h"
 #include "integrate/wavefront.h"
 #include "ray_files.h"
 #include "ray_sets.h"
+#include "tracers.h"
 
 namespace castray {
 namespace {
@@ -32,100 +30,12 @@ struct Soup {
   }
 };
 
-/// An accelerator and how it traces a run of rays.
-class Tracer {
- public:
-  virtual ~Tracer() = default;
-  virtual BvhStats build(int threads) = 0;
-  virtual void trace(const RaySet& rays, bool any, std::size_t first, std::size_t count,
-                     RayResult* out) const = 0;
-};
-
-class WideTracer : public Tracer {
- public:
-  WideTracer(const MeshView& mesh, const KernelApi& kernel, BuildQuality quality)
-      : mesh_(mesh), kernel_(kernel), quality_(quality) {}
-
-  BvhStats build(int threads) override {
-    bvh_ = WideBvh::build(mesh_, threads, quality_);
-    return bvh_.stats();
-  }
-
-  void trace(const RaySet& rays, bool any, std::size_t first, std::size_t count,
-             RayResult* out) const override {
-    constexpr std::size_t batch = 512;
-    for (std::size_t i = first; i < first + count; i += batch) {
-      const auto n = static_cast<std::uint32_t>(std::min(batch, first + count - i));
-      float t[batch], b1[batch], b2[batch];
-      std::uint32_t triangle[batch];
-      std::uint8_t occluded[batch];
-      const auto in = [&](int number) { return rays.number[number].data() + i; };
-      if (any) {
-        kernel_.bvh_occluded(bvh_.view(), {in(0), in(1), in(2), in(3), in(4), in(5), in(6), occluded, n});
-        for (std::uint32_t r = 0; r < n; ++r) out[i + r] = any_result(occluded[r]);
-      } else {
-        kernel_.bvh_closest(bvh_.view(),
-                            {in(0), in(1), in(2), in(3), in(4), in(5), in(6), t, triangle, b1, b2, n});
-        for (std::uint32_t r = 0; r < n; ++r) out[i + r] = {t[r], triangle[r]};
-      }
-    }
-  }
-
- private:
-  MeshView mesh_;
-  const KernelApi& kernel_;
-  BuildQuality quality_;
-  WideBvh bvh_;
-};
-
-/// Bvh or TriangleList: one ray at a time, in plain C++.
-template <class Accelerator>
-class PlainTracer : public Tracer {
- public:
-  explicit PlainTracer(const MeshView& mesh) : mesh_(mesh) {}
-
-  BvhStats build(int threads) override {
-    if constexpr (std::is_same_v<Accelerator, Bvh>) {
-      accelerator_ = std::make_unique<Bvh>(Bvh::build(mesh_, threads));
-      return accelerator_->stats();
-    } else {
-      accelerator_ = std::make_unique<TriangleList>(mesh_);
-      return {.triangles = mesh_.count};
-    }
-  }
-
-  void trace(const RaySet& rays, bool any, std::size_t first, std::size_t count,
-             RayResult* out) const override {
-    const auto& n = rays.number;
-    for (std::size_t i = first; i < first + count; ++i) {
-      const Ray<float> ray{{n[0][i], n[1][i], n[2][i]}, {n[3][i], n[4][i], n[5][i]}, n[6][i]};
-      if (any) {
-        out[i] = any_result(accelerator_->occluded(ray));
-      } else {
-        const Hit<float> hit = accelerator_->closest(ray);
-        out[i] = {hit.t, hit.triangle};
-      }
-    }
-  }
-
- private:
-  MeshView mesh_;
-  std::unique_ptr<Accelerator> accelerator_;
-};
-
 struct Options {
   std::string mesh, rays, accel = "wide", isa = "auto", mode = "closest", out, build = "fast";
   int threads = 1, repeat = 5;
   std::string make, write;
   RaySetOptions set;
 };
-
-std::unique_ptr<Tracer> make_tracer(const Options& options, const MeshView& mesh) {
-  if (options.accel == "bvh2") return std::make_unique<PlainTracer<Bvh>>(mesh);
-  if (options.accel == "list") return std::make_unique<PlainTracer<TriangleList>>(mesh);
-  return std::make_unique<WideTracer>(mesh, choose_kernel(options.isa),
-                                      options.build == "best" ? BuildQuality::best : BuildQuality::fast);
-}
 
 void write_ray_set(const Options& options, const MeshView& mesh) {
   const WideBvh bvh = WideBvh::build(mesh, options.threads);
@@ -139,9 +49,11 @@ void write_ray_set(const Options& options, const MeshView& mesh) {
 }
 
 void measure(const Options& options, const MeshView& mesh) {
-  const RaySet rays = read_rays(options.rays);
+  const RayArrays rays = read_rays(options.rays);
   if (rays.size() == 0) throw InputError({options.rays}, "holds no ray");
-  const std::unique_ptr<Tracer> tracer = make_tracer(options, mesh);
+  const KernelApi& kernel = choose_kernel(options.isa);
+  const std::unique_ptr<Tracer> tracer = make_tracer(
+      options.accel, mesh, kernel, options.build == "best" ? BuildQuality::best : BuildQuality::fast);
   BvhStats stats;
   double build_seconds[2];
   for (const int threads : {1, 2}) {
@@ -150,7 +62,9 @@ void measure(const Options& options, const MeshView& mesh) {
     build_seconds[threads - 1] = median(seconds);
   }
 
-  std::vector<RayResult> results(rays.size());
+  const bool any = options.mode == "any";
+  std::vector<Hit<float>> hits(any ? 0 : rays.size());
+  std::vector<std::uint8_t> occluded(any ? rays.size() : 0);
   constexpr std::int64_t run = 4096;
   const auto count = static_cast<std::int64_t>(rays.size());
   std::vector<double> seconds;
@@ -158,15 +72,23 @@ void measure(const Options& options, const MeshView& mesh) {
     const auto start = std::chrono::steady_clock::now();
 #pragma omp parallel for schedule(dynamic) num_threads(options.threads)
     for (std::int64_t first = 0; first < count; first += run) {
-      tracer->trace(rays, options.mode == "any", static_cast<std::size_t>(first),
-                    static_cast<std::size_t>(std::min(run, count - first)), results.data());
+      const auto f = static_cast<std::size_t>(first),
+                 n = static_cast<std::size_t>(std::min(run, count - first));
+      if (any) {
+        tracer->occluded(rays, f, n, occluded.data() + f);
+      } else {
+        tracer->closest(rays, f, n, hits.data() + f);
+      }
     }
     seconds.push_back(seconds_since(start));
   }
+  std::vector<RayResult> results(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    results[i] = any ? any_result(occluded[i] != 0) : RayResult{hits[i].t, hits[i].triangle};
+  }
   if (!options.out.empty()) write_results(results, options.out);
-  fmt::print("{} triangles, {} rays, {} hit; {}, {}, {} threads\n", mesh.count, count, count_hits(results),
-             options.accel, options.accel == "wide" ? choose_kernel(options.isa).name : "plain",
-             options.threads);
+  fmt::print("{} triangles, {} rays, {} hit; {}, {} threads\n", mesh.count, count, count_hits(results),
+             tracer->name(), options.threads);
   fmt::print("build {:.4f} s with 1 thread, {:.4f} s with 2; {:.1f} bytes a triangle, depth {}, {} nodes\n",
              build_seconds[0], build_seconds[1], static_cast<double>(stats.bytes) / std::max(1u, mesh.count),
              stats.depth, stats.nodes);

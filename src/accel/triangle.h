@@ -1,20 +1,21 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "accel/ray.h"
 
 namespace castray {
 
-/// Whether a ray can hit anything: finite, and of a length whose reciprocal and products stay in range.
-/// All accelerators answer "no hit" for the others.
+/// Whether a ray can hit anything: finite, and of a size whose reciprocals and products stay in range. All
+/// accelerators answer "no hit" for the others. Scene space lies in [-1,1]^3, far from these bounds.
 template <class T>
 bool is_traceable(const Ray<T>& ray) {
-  constexpr T shortest = T(7.888609052210118e-31), longest = T(1.2676506002282294e30);  // 2^-100, 2^100
-  const Vec3<T>&o = ray.origin, d = ray.direction;
-  const T size = std::max(std::abs(d.x), std::max(std::abs(d.y), std::abs(d.z)));
-  return is_finite(d) && size >= shortest && size <= longest &&
-         std::max(std::abs(o.x), std::max(std::abs(o.y), std::abs(o.z))) <= longest && is_finite(o);
+  const auto size = [](const Vec3<T>& v) {
+    return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
+  };
+  return is_finite(ray.direction) && is_finite(ray.origin) && size(ray.direction) >= T(0x1p-60) &&
+         size(ray.direction) <= T(0x1p60) && size(ray.origin) <= T(0x1p34);
 }
 
 /// a*b - c*d to two ulps, of the exact sign (but for underflow). Jeannerod, Louvet, Muller (2013), after

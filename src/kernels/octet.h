@@ -9,9 +9,6 @@
 // of a packet (lanes.h has as many lanes as the set's registers). Compiler vectors, which are split where
 // registers are shorter.
 
-// Everything here is inlined: that such vectors are passed differently with and without AVX does not matter.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace castray::CASTRAY_ISA {
 
 using F8 = float __attribute__((vector_size(32)));

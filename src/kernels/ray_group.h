@@ -33,7 +33,7 @@ CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& 
   const Float place = max(abs(o[0]), max(abs(o[1]), abs(o[2])));
   const Float sum =
       (abs(d[0]) + abs(d[1]) + abs(d[2])) * (abs(o[0]) + abs(o[1]) + abs(o[2]));  // NaN if any is
-  const Mask traceable = (size >= Float(0x1p-100f)) & (size <= Float(0x1p100f)) & (place <= Float(0x1p100f)) &
+  const Mask traceable = (size >= Float(0x1p-60f)) & (size <= Float(0x1p60f)) & (place <= Float(0x1p34f)) &
                          (sum <= Float(__builtin_inff())) & (t_max > Float(0.0f));
   store(group.traceable + first, select(traceable, Uint(1u), Uint(0u)));
 
@@ -63,7 +63,7 @@ CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& 
   Uint octant(0u);
   for (int i = 0; i < 3; ++i) {
     // A component this small moves the ray by less than the boxes have grown: a finite reciprocal will do.
-    const Float inverse = Float(1.0f) / copy_sign(max(abs(d[i]), size * Float(0x1p-64f)), d[i]);
+    const Float inverse = Float(1.0f) / copy_sign(max(abs(d[i]), size * Float(0x1p-32f)), d[i]);
     const Float grow =
         copy_sign(Float(32 * half_ulp) * (reach[i] + reach_z) + Float(4 * half_ulp) * abs(o[i]), d[i]);
     const Float near_inverse = inverse * Float(1 - rounding), far_inverse = inverse * Float(1 + rounding);
