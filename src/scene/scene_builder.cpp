@@ -1,5 +1,7 @@
 #include "scene/scene_builder.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -160,6 +162,31 @@ void SceneBuilder::round_positions() {
     scene.positions[i] = Vec3f(scene.to_scene(mesh_.positions[i]));
 }
 
+void SceneBuilder::warn_of_rounding() {
+  constexpr double tolerated = 1e-3;                // of a triangle's longest edge
+  constexpr double rounding = 0x1p-25 * 1.7320508;  // the most that a corner in [-1,1]^3 is moved by
+  std::size_t moved = 0;
+  double most = 0;
+  for (const Index3& corners : mesh_.triangles) {
+    double longest = 0, error = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      longest = std::max(
+          longest, length(Vec3d(scene.positions[corners[i]]) - Vec3d(scene.positions[corners[(i + 1) % 3]])));
+    if (longest > rounding / tolerated) continue;
+    for (std::uint32_t i : corners)
+      error = std::max(error, length(Vec3d(scene.positions[i]) - scene.to_scene(mesh_.positions[i])));
+    const double share = longest > 0 ? error / longest : 1;
+    most = std::max(most, share);
+    moved += share > tolerated;
+  }
+  if (moved == 0) return;
+  scene.warnings.push_back(
+      fmt::format("{} of {} triangles are so small beside the whole scene that rounding moves their corners, "
+                  "by up to {:.2g} % of their "
+                  "longest edge; bring far parts nearer or leave them out",
+                  moved, mesh_.triangles.size(), 100 * most));
+}
+
 void SceneBuilder::drop_flat() {
   std::vector<bool> keep(mesh_.triangles.size());
   for (std::size_t t = 0; t < keep.size(); ++t) {
@@ -174,6 +201,7 @@ Scene SceneBuilder::finish() {
   drop_unused(mesh_.positions, mesh_.triangles);
   find_scene_space();
   round_positions();
+  warn_of_rounding();
   mesh_.positions = {};
   drop_flat();
   drop_unused(scene.positions, mesh_.triangles);

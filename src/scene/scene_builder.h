@@ -43,6 +43,7 @@ class SceneBuilder {
   void drop_unusable();
   void find_scene_space();
   void round_positions();
+  void warn_of_rounding();
   void drop_flat();  ///< of those that rounding has made flat, too
   void keep_triangles(const std::vector<bool>& keep);
 
