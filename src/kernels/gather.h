@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kernels/shaft.h"
+#include "kernels/bvh_shaft.h"
 #include "kernels/stages.h"
 
 // What the pixels of a tile get from one point that sends light to them.
@@ -87,36 +87,48 @@ CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
   if (weights) t.weight[i] = select(hidden, black(), t.weight[i]);
 }
 
+/// Takes out what is hidden from the sender, by a ray for each pixel.
+CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
+                                 VisibilityScratch& s, bool weights, Transfer& t) {
+  int n = 0;
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
+    const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
+    compress_store(s.o, n, open, y.p);
+    compress_store(s.d, n, open, load(tile.x.p, tile.first + i * width) - y.p);
+    compress_store(s.pixel + n, open, pixel);
+    n += count(open);
+  }
+  bvh_occluded(c.scene.bvh, {s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, ends.one, s.blocked, (uint32_t)n});
+  uint64_t hidden = 0;
+  for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
+  for (int i = 0; i < tile_vectors; ++i)
+    hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
+}
+
 /// Takes out what is hidden from the sender.
 template <uint32_t features>
 CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
                                  VisibilityScratch& s, Transfer& t) {
   constexpr bool weights = features & feature_materials;
   if constexpr (features & feature_bvh) {
-    int n = 0;
-    for (int i = 0; i < tile_vectors; ++i) {
-      const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
-      const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
-      compress_store(s.o, n, open, y.p);
-      compress_store(s.d, n, open, load(tile.x.p, tile.first + i * width) - y.p);
-      compress_store(s.pixel + n, open, pixel);
-      n += count(open);
-    }
-    bvh_occluded(c.scene.bvh, {s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, ends.one, s.blocked, (uint32_t)n});
-    uint64_t hidden = 0;
-    for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
-    for (int i = 0; i < tile_vectors; ++i)
-      hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
+    if (!make_shaft(c.scene.bvh, y.p, tile.box, s.shaft))
+      return hide_by_rays(c, y, tile, ends, s, weights, t);
   } else {
     make_shaft(c.scene.blocker_fields, y.p, tile.box, s.shaft);
-    if (s.shaft.count == 0) return;
-    for (int i = 0; i < tile_vectors; ++i) {
-      const Vec d = load(tile.x.p, tile.first + i * width) - y.p;
-      Mask hidden(false);
-      for (int b = 0; b < s.shaft.count; ++b) hidden = hidden | hides(s.shaft, b, d);
-      const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
-      hide(t, i, hidden & ~own, weights);
+  }
+  if (s.shaft.count == 0) return;
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Mask open = t.density[i] > Float(0.f);
+    if (none(open)) continue;
+    const Vec d = load(tile.x.p, tile.first + i * width) - y.p;
+    Mask hidden(false);
+    for (int b = 0; b < s.shaft.count; ++b) {
+      hidden = hidden | hides(s.shaft, b, d);
+      if ((b & 3) == 3 && none(open & ~hidden)) break;
     }
+    const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
+    hide(t, i, hidden & ~own, weights);
   }
 }
 

@@ -11,7 +11,7 @@ struct Scratch {
   FarEnds ends;
   Paths paths;
   Hits hits;
-  Vertices camera, vertices;
+  Vertices camera, vertices, glossy;
   ShadowRays shadow_rays;
   Radiance radiance;
   Suffixes suffixes;
@@ -56,21 +56,23 @@ CASTRAY_INLINE void split_specular(const KernelScene& scene, Vertices& camera, V
     const Mask alone = first_lanes(camera.count - i) & (length_squared(normal) > Float(0.f)) &
                        ((kind == Uint(kind_dielectric)) | (smooth & ~(kind == Uint(kind_diffuse))));
     if (none(alone)) continue;
-    const int n = out.count;
-    compress_store(out.p, n, alone, load(camera.p, i));
-    compress_store(out.normal, n, alone, normal);
-    compress_store(out.albedo, n, alone, load(camera.albedo, i));
-    compress_store(out.throughput, n, alone, load(camera.throughput, i));
-    compress_store(out.material + n, alone, load(camera.material + i));
-    compress_names(out.names, n, alone, camera.names, i);
-    compress_store(out.wo, n, alone, load(camera.wo, i));
-    compress_store(out.shading_normal, n, alone, load(camera.shading_normal, i));
-    compress_store(out.error + n, alone, load(camera.error + i));
-    compress_store(out.eta2 + n, alone, load(camera.eta2 + i));
+    compress_vertices(out, out.count, alone, camera, i);
     out.count += count(alone);
     store(camera.normal, i, select(alone, black(), normal));
     store(camera.albedo, i, select(alone, black(), load(camera.albedo, i)));
   }
+}
+
+/// Follows the glossy suffixes with the unit weight that leaves what they reflect to each pixel.
+template <uint32_t features>
+CASTRAY_INLINE void follow_glossy(Context& c, Scratch& s) {
+  if (s.glossy.count == 0 || !may_have_edges(c.options, 3)) return;
+  light_glossy<features>(c, s.glossy, s.suffixes, s.shadow_rays);
+  add_unblocked<features>(c, s.ends, s.shadow_rays, s.radiance);
+  scatter_glossy<features>(c, s.glossy, s.suffixes, s.paths);
+  closest<features>(c, s.paths, s.ends, false, s.hits);
+  surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+  follow<features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
 }
 
 /// The light that the camera's vertices reflect, gathered tile by tile.
@@ -88,7 +90,9 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
   closest<features>(c, s.paths, s.ends, false, s.hits);
   surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
   keep_suffixes<features>(c, s.vertices, s.suffixes);
+  if constexpr (features & feature_materials) split_glossy(c.scene, s.vertices, s.glossy);
   follow<features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
+  if constexpr (features & feature_materials) follow_glossy<features>(c, s);
   gather_suffixes<features>(c, s.camera, s.boxes, s.ends, s.suffixes, s.radiance, s.visibility, s.gathered);
   for (int i = 0; i < n; i += width) {
     const Vec sum = load(s.gathered.sum, i);
@@ -105,7 +109,7 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   Scratch& s = *static_cast<Scratch*>(scratch);
   Context c{scene, options, job};
   fill(s.ends);
-  for (int i = 0; i < 2 * batch_size; ++i) s.radiance.x[i] = s.radiance.y[i] = s.radiance.z[i] = 0;
+  s.radiance.clear();
   camera_rays(c, s.paths);
   closest<features>(c, s.paths, s.ends, true, s.hits);
   surfaces<features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);

@@ -93,6 +93,11 @@ struct Suffixes {
   alignas(64) uint32_t landed[batch_size];      ///< 0: there is no y
   alignas(64) uint32_t origin[batch_size];      ///< entry of the camera vertex it started from
   VecArray<batch_size> weight;                  ///< f cos / pdf there, times the stratum
+  // Of glossy y, which reflect to each pixel what it gets by itself:
+  alignas(64) uint32_t glossy[batch_size];
+  VecArray<batch_size> shading_normal, albedo;
+  alignas(64) uint32_t material[batch_size];
+  VecArray<batch_size> to_light, onward;  ///< directions: to the light point, and of the next segment
 };
 
 template <int N>
@@ -181,11 +186,142 @@ CASTRAY_INLINE void keep_suffixes(const Context& c, Vertices& y, Suffixes& suffi
     suffixes.emission.z[suffix] = shines ? e[2] : 0.f;
     suffixes.light_density[suffix] =
         material.light_density * (float)c.options.light_points / (material.two_sided ? 2.f : 1.f);
-    if ((features & feature_materials) && material.kind != kind_diffuse) {
+    suffixes.glossy[suffix] = 0;
+    if (!(features & feature_materials) || material.kind == kind_diffuse) continue;
+    if (material.kind != kind_dielectric && material.alpha > 0) {
+      suffixes.glossy[suffix] = 1;
+      suffixes.material[suffix] = y.material[k];
+      copy_entry(suffixes.shading_normal, suffix, y.shading_normal.x, y.shading_normal.y, y.shading_normal.z,
+                 k);
+      copy_entry(suffixes.albedo, suffix, y.albedo.x, y.albedo.y, y.albedo.z, k);
+    } else {
       y.names.slot[k] = suffixes.origin[suffix];
       copy_entry(y.throughput, (uint32_t)k, suffixes.weight.x, suffixes.weight.y, suffixes.weight.z,
                  (int)suffix);
     }
+  }
+}
+
+/// Takes the vertices with a glossy lobe out of `y` into `out`.
+CASTRAY_INLINE void split_glossy(const KernelScene& scene, Vertices& y, Vertices& out) {
+  int kept = 0;
+  out.count = 0;
+  for (int i = 0; i < y.count; i += width) {
+    const Mask active = first_lanes(y.count - i);
+    const Uint record = select(active, load(y.material + i) & 0x7fffffffu, Uint(0u));
+    const Uint kind = gather(&scene.materials->kind, record);
+    const Mask glossy = active & ((kind == Uint(kind_conductor)) | (kind == Uint(kind_microfacet))) &
+                        (gather(&scene.materials->alpha, record) > Float(0.f));
+    compress_vertices(out, out.count, glossy, y, i);
+    compress_vertices(y, kept, active & ~glossy, y, i);
+    out.count += count(glossy);
+    kept += count(active & ~glossy);
+  }
+  y.count = kept;
+}
+
+/// One light point for each glossy suffix, without what the suffix makes of it.
+template <uint32_t features>
+CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& out) {
+  out.count = 0;
+  const LightList& lights = c.scene.lights;
+  if (lights.count == 0) return;
+  for (int i = 0; i < y.count; i += width) {
+    const Mask active = first_lanes(y.count - i);
+    const Float choice = lights.count > 1
+                             ? draw<3>(c.options.sobol, sequence_of(y.names, i), choice_block(1)).u[2]
+                             : Float(0.f);
+    const LightPoint point =
+        sample_light(lights, choice, load(y.names.light_u + i), load(y.names.light_v + i));
+    const Vec p = load(y.p, i);
+    const LightSegment segment = connect_light(point, p);
+    const Vec wi = segment.towards * segment.inverse_distance;
+    const Mask lit = active & (segment.solid_angle > Float(0.f)) & (dot(load(y.normal, i), wi) > Float(0.f)) &
+                     (dot(load(y.shading_normal, i), wi) > Float(0.f));
+    const int n = out.count;
+    compress_store(out.o, n, lit, p);
+    compress_store(out.d, n, lit, segment.end - p);
+    compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);
+    compress_store(out.slot + n, lit, load(y.names.slot + i) + Uint((uint32_t)batch_size));
+    out.count += count(lit);
+    for (int l = 0; l < width && i + l < y.count; ++l) {
+      const uint32_t suffix = y.names.slot[i + l] - batch_size;
+      suffixes.to_light.x[suffix] = lane(wi.x, l);
+      suffixes.to_light.y[suffix] = lane(wi.y, l);
+      suffixes.to_light.z[suffix] = lane(wi.z, l);
+    }
+  }
+}
+
+/// The next segment of each glossy suffix, chosen as the suffix's own pixel would.
+template <uint32_t features>
+CASTRAY_INLINE void scatter_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, Paths& out) {
+  const Vec one{Float(1.f), Float(1.f), Float(1.f)};
+  out.count = 0;
+  for (int i = 0; i < y.count; i += width) {
+    const Sequence sequence = sequence_of(y.names, i);
+    const Numbers<4> n = draw<4>(c.options.sobol, sequence, direction_block(1));
+    const Numbers<2> choice = draw<2>(c.options.sobol, sequence, choice_block(1));
+    const Shading shading = shading_of(c.scene, y, i);
+    const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
+    const Vec wi = to_world(shading.frame, s.wi);
+    const Mask going =
+        first_lanes(y.count - i) & shading.consistent(wi, s.wi) & ~(max_component(s.weight) <= Float(0.f));
+    const int k = out.count;
+    compress_store(out.o, k, going, load(y.p, i));
+    compress_store(out.d, k, going, wi);
+    compress_store(out.throughput, k, going, one);
+    compress_store(out.arrival + k, going, Float(0.f));
+    compress_store(out.eta2 + k, going, Float(1.f));
+    compress_names(out.names, k, going, y.names, i);
+    compress_store(out.names.light_u + k, going, n.u[2]);
+    compress_store(out.names.light_v + k, going, n.u[3]);
+    out.count += count(going);
+    for (int l = 0; l < width && i + l < y.count; ++l) {
+      const uint32_t suffix = y.names.slot[i + l] - batch_size;
+      suffixes.onward.x[suffix] = lane(wi.x, l);
+      suffixes.onward.y[suffix] = lane(wi.y, l);
+      suffixes.onward.z[suffix] = lane(wi.z, l);
+    }
+  }
+}
+
+/// The BSDF of a glossy suffix, the same in all lanes, and its frame.
+struct GlossySuffix {
+  Bsdf bsdf;
+  Frame frame;
+  Vec normal;
+};
+CASTRAY_INLINE GlossySuffix glossy_suffix(const KernelScene& scene, const Suffixes& suffixes, int i) {
+  return {gather_bsdf(scene, Uint(suffixes.material[i]), broadcast_entry(suffixes.albedo, i)),
+          make_frame(broadcast_entry(suffixes.shading_normal, i)), broadcast_entry(suffixes.normal, i)};
+}
+
+/// Adds what a glossy suffix sends to each pixel: `lit` over the density, reflected from its light point;
+/// `arriving` times the stratum, reflected from the next segment, whose direction every x_k could have made
+/// y_j take; `emission`.
+CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixes, int suffix,
+                               const Gatherers& tile, const Transfer& t, const Vec& lit, const Vec& arriving,
+                               const Vec& emission, Gathered& gathered) {
+  const GlossySuffix y = glossy_suffix(scene, suffixes, suffix);
+  const Vec p = broadcast_entry(suffixes.p, suffix);
+  const Vec to_light = to_local(y.frame, broadcast_entry(suffixes.to_light, suffix));
+  const Vec onward = to_local(y.frame, broadcast_entry(suffixes.onward, suffix));
+  Float density[tile_vectors];
+  Vec reflected[tile_vectors], direct[tile_vectors];
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec wo = to_local(y.frame, normalize(load(tile.x.p, tile.first + i * width) - p));
+    const BsdfValue next = evaluate(y.bsdf, wo, onward);
+    direct[i] = evaluate(y.bsdf, wo, to_light).f_cos * lit;
+    reflected[i] = next.f_cos * arriving;
+    density[i] = select(t.density[i] > Float(0.f), t.density[i] * next.pdf, Float(0.f));
+  }
+  const float sum = ordered_sum(density);
+  const Float inverse(sum > 0 ? 1.f / sum : 0.f);
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec radiance = fma(reflected[i], inverse, direct[i]) + emission;
+    const Vec more = select(t.density[i] > Float(0.f), t.weight[i] * radiance, black());
+    store(gathered.sum, tile.first + i * width, load(gathered.sum, tile.first + i * width) + more);
   }
 }
 
@@ -201,7 +337,7 @@ CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const Box* bo
     for (int j = 0; j < c.options.suffixes; ++j) {
       const int suffix = tile * tile_pixels + j, slot = batch_size + suffix,
                 origin = (int)suffixes.origin[suffix];
-      const Vec reflected{Float(radiance.x[slot]), Float(radiance.y[slot]), Float(radiance.z[slot])};
+      const Vec reflected = radiance.at(slot);
       if (!suffixes.landed[suffix]) {
         if (none(max_component(reflected) > Float(0.f))) continue;
         const bool weighted = features & feature_materials;
@@ -210,8 +346,10 @@ CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const Box* bo
         gathered.sum.z[origin] += radiance.z[slot] * (weighted ? suffixes.weight.z[suffix] : stratum);
         continue;
       }
+      const bool glossy = (features & feature_materials) && suffixes.glossy[suffix];
       const Vec emitted = broadcast_entry(suffixes.emission, suffix);
-      if (all(max_component(reflected + emitted) <= Float(0.f))) continue;
+      const Vec lit = glossy ? radiance.at(slot + batch_size) : black();
+      if (all(max_component(reflected + emitted + lit) <= Float(0.f))) continue;
       Transfer t;
       transfer<features>(c,
                          {broadcast_entry(suffixes.p, suffix), broadcast_entry(suffixes.normal, suffix),
@@ -219,9 +357,15 @@ CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const Box* bo
                          gatherers, ends, s, t);
       const float density = ordered_sum(t.density) / stratum;
       if (!(density > 0)) continue;
-      const Vec sum = fma(emitted, Float(1.f / (density + suffixes.light_density[suffix])),
-                          reflected * Float(1.f / density));
-      add_scaled<features>(gathered, gatherers.first, t, sum);
+      const Vec emission = emitted * Float(1.f / (density + suffixes.light_density[suffix]));
+      if constexpr (features & feature_materials) {
+        if (glossy) {
+          add_glossy(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),
+                     reflected * Float(stratum), emission, gathered);
+          continue;
+        }
+      }
+      add_scaled<features>(gathered, gatherers.first, t, fma(reflected, Float(1.f / density), emission));
     }
   }
 }

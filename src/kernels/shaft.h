@@ -35,42 +35,58 @@ CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
 
 CASTRAY_INLINE Float sum_abs(Vec a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
+/// Adds the facets with the given corners, relative to y, whose pyramid meets the box; `center` too is
+/// relative to y.
+template <int corners>
+CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal, const Vec& center,
+                                 const Vec& half, Mask lanes, Shaft& out) {
+  const Float above = dot(normal, corner[0]);
+  const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
+                   flip_by_sign(normal.z, above)};
+  // more than the rounding of the dot products: what the box lies on does not hide it
+  const Float base = fma((sum_abs(center) + sum_abs(half)) * sum_abs(normal), Float(0x1p-21f), abs(above));
+  Mask meets = lanes & (support(beyond, center, half) > base);
+  Vec edge[4];
+  Float margin[4];
+  for (int k = 0; k < corners; ++k) {
+    const Vec& from = corner[k], &to = corner[(k + 1) % corners];
+    const Vec e = antisymmetric_cross(from, to);
+    edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
+    margin[k] = sum_abs(from) * sum_abs(to) * Float(0x1p-20f);
+    meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
+  }
+  if (none(meets)) return;
+  if constexpr (corners == 3) {
+    edge[3] = edge[2];
+    margin[3] = margin[2];
+  }
+  const int n = out.count;
+  for (int k = 0; k < 4; ++k) {
+    compress_store(out.edge[k][0] + n, meets, edge[k].x);
+    compress_store(out.edge[k][1] + n, meets, edge[k].y);
+    compress_store(out.edge[k][2] + n, meets, edge[k].z);
+    compress_store(out.margin[k] + n, meets, margin[k]);
+  }
+  compress_store(out.normal[0] + n, meets, beyond.x);
+  compress_store(out.normal[1] + n, meets, beyond.y);
+  compress_store(out.normal[2] + n, meets, beyond.z);
+  compress_store(out.base + n, meets, base);
+  out.count += count(meets);
+}
+
 /// The blockers whose pyramid from y meets the box.
 CASTRAY_INLINE void make_shaft(const BlockerList& blockers, const Vec& y, const Box& box, Shaft& out) {
   out.count = 0;
   const Vec center = broadcast(box.center) - y, half = broadcast(box.half);
   for (uint32_t i = 0; i < blockers.count; i += width) {
-    Vec corner[4], edge[4];
-    Float margin[4];
+    Vec corner[4];
     for (int k = 0; k < 4; ++k)
       corner[k] = Vec{load(blockers.corner[k][0] + i), load(blockers.corner[k][1] + i),
                       load(blockers.corner[k][2] + i)} -
                   y;
     const Vec normal{load(blockers.normal[0] + i), load(blockers.normal[1] + i),
                      load(blockers.normal[2] + i)};
-    const Float above = dot(normal, corner[0]);
-    const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
-                     flip_by_sign(normal.z, above)};
-    Mask meets = first_lanes((int)(blockers.count - i)) & (support(beyond, center, half) > abs(above));
-    for (int k = 0; k < 4; ++k) {
-      const Vec e = antisymmetric_cross(corner[k], corner[(k + 1) & 3]);
-      edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
-      margin[k] = sum_abs(corner[k]) * sum_abs(corner[(k + 1) & 3]) * Float(0x1p-20f);
-      meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
-    }
-    if (none(meets)) continue;
-    const int n = out.count;
-    for (int k = 0; k < 4; ++k) {
-      compress_store(out.edge[k][0] + n, meets, edge[k].x);
-      compress_store(out.edge[k][1] + n, meets, edge[k].y);
-      compress_store(out.edge[k][2] + n, meets, edge[k].z);
-      compress_store(out.margin[k] + n, meets, margin[k]);
-    }
-    compress_store(out.normal[0] + n, meets, beyond.x);
-    compress_store(out.normal[1] + n, meets, beyond.y);
-    compress_store(out.normal[2] + n, meets, beyond.z);
-    compress_store(out.base + n, meets, abs(above));
-    out.count += count(meets);
+    add_pyramids(corner, normal, center, half, first_lanes((int)(blockers.count - i)), out);
   }
 }
 

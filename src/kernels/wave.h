@@ -66,6 +66,20 @@ struct Vertices {
   alignas(64) FloatArray error, eta2;
 };
 
+/// Copies the vertices i to i + width - 1 of `from`, those of `m`, to the entries of `to` from n on.
+CASTRAY_INLINE void compress_vertices(Vertices& to, int n, Mask m, const Vertices& from, int i) {
+  compress_store(to.p, n, m, load(from.p, i));
+  compress_store(to.normal, n, m, load(from.normal, i));
+  compress_store(to.albedo, n, m, load(from.albedo, i));
+  compress_store(to.throughput, n, m, load(from.throughput, i));
+  compress_store(to.material + n, m, load(from.material + i));
+  compress_names(to.names, n, m, from.names, i);
+  compress_store(to.wo, n, m, load(from.wo, i));
+  compress_store(to.shading_normal, n, m, load(from.shading_normal, i));
+  compress_store(to.error + n, m, load(from.error + i));
+  compress_store(to.eta2 + n, m, load(from.eta2 + i));
+}
+
 /// Segments o + t d, 0 < t < 1, and the radiance that arrives if nothing is between.
 struct ShadowRays {
   int count = 0;
@@ -74,9 +88,13 @@ struct ShadowRays {
   alignas(64) uint8_t blocked[capacity];
 };
 
-/// Sums of radiance; slots are those of paths: first the pixels, then the shared suffixes.
+/// Sums of radiance; slots are those of paths: first the pixels, then the shared suffixes, then what light
+/// points send to glossy suffixes.
 struct Radiance {
-  alignas(64) float x[2 * batch_size], y[2 * batch_size], z[2 * batch_size];
+  alignas(64) float x[3 * batch_size], y[3 * batch_size], z[3 * batch_size];
+
+  CASTRAY_INLINE void clear() { __builtin_memset(this, 0, sizeof *this); }
+  CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
 
   /// Adds in the lanes of `m`; no two of them have the same slot.
   CASTRAY_INLINE void add(const uint32_t* slot, Mask m, Vec v) {
