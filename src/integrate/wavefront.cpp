@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <mutex>
 
@@ -26,7 +27,9 @@ struct Workplace {
   std::vector<float> radiance;
 
   explicit Workplace(const KernelApi& kernel)
-      : scratch(std::aligned_alloc(64, (kernel.scratch_bytes + 63) / 64 * 64)), radiance(3 * batch_size) {}
+      : scratch(std::aligned_alloc(64, (kernel.scratch_bytes + 63) / 64 * 64)), radiance(3 * batch_size) {
+    std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
+  }
   TileResult result() { return {{&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0}; }
 };
 

@@ -118,7 +118,9 @@ CASTRAY_INLINE void start_suffixes(const Context& c, const Vertices& x, Suffixes
     for (uint32_t j = 0; j < per_tile; j += width) {
       const Uint item = Uint(j) + lane_index(), suffix = Uint((uint32_t)(tile * tile_pixels)) + item;
       const Uint in_stratum = hash_combine(Uint(choice_key), item + 0x51u) & (stratum - 1);
-      const Uint entry = Uint((uint32_t)(tile * tile_pixels)) + (item << shift) + in_stratum;
+      const Mask there = item < Uint(per_tile);
+      const Uint entry =
+          Uint((uint32_t)(tile * tile_pixels)) + select(there, (item << shift) + in_stratum, Uint(0u));
       const Uint index = tile_index(key, c.job.sample, item, per_tile);
       const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, direction_block(0));
       const Vec normal = gather_entries(x.normal, entry), albedo = gather_entries(x.albedo, entry);
@@ -134,7 +136,6 @@ CASTRAY_INLINE void start_suffixes(const Context& c, const Vertices& x, Suffixes
       } else {
         wi = to_world(make_frame(normal), cosine_hemisphere(n.u[0], n.u[1]));
       }
-      const Mask there = item < Uint(per_tile);
       const Mask going =
           there & (length_squared(normal) > Float(0.f)) & ~(max_component(weight) <= Float(0.f));
       const int first = tile * tile_pixels + (int)j, k = out.count;

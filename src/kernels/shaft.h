@@ -49,7 +49,7 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
   Vec edge[4];
   Float margin[4];
   for (int k = 0; k < corners; ++k) {
-    const Vec& from = corner[k], &to = corner[(k + 1) % corners];
+    const Vec &from = corner[k], &to = corner[(k + 1) % corners];
     const Vec e = antisymmetric_cross(from, to);
     edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
     margin[k] = sum_abs(from) * sum_abs(to) * Float(0x1p-20f);
