@@ -11,6 +11,9 @@ namespace {
 /// Up to so many triangles a flat list is faster than a tree.
 constexpr std::size_t longest_list = 64;
 
+/// With more, light points are what a tile's error comes from.
+constexpr std::size_t few_light_triangles = 8;
+
 bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
   if (needs.textures || needs.smooth_normals) return false;  // facets have no barycentrics
   return options.accel == AccelKind::list ||
@@ -39,7 +42,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
       (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
   plan.mis = uses_mis(options.mis, needs.emitting_share);
   plan.suffixes = options.reuse.automatic ? 32 : options.reuse.suffixes;
-  plan.light_points = 8;
+  plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.build = options.build == BuildQuality::automatic ? BuildQuality::fast : options.build;
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, const char* what) {
