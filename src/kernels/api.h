@@ -172,6 +172,8 @@ struct KernelApi {
   /// By KernelFeature set; null where none is compiled. `scratch`: scratch_bytes, aligned to 64, of the
   /// calling thread.
   RenderTiles render_tiles[8];
+  /// sample_block of core/sequences.h, for samples of the first epoch.
+  void (*sample_block)(bool sobol, uint32_t key, uint32_t index, uint32_t block, float* u);
   void (*bvh_closest)(const WideBvhView&, const RayBatch&);      ///< the nearest hit of every ray
   void (*bvh_occluded)(const WideBvhView&, const ShadowBatch&);  ///< whether each ray hits anything
 };

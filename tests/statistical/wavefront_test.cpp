@@ -1,0 +1,196 @@
+#include <catch2/catch.hpp>
+
+#include <functional>
+
+#include "integrate/wavefront.h"
+#include "reference_images.h"
+#include "test_scenes.h"
+
+using namespace castray;
+using namespace castray::test;
+
+// The wavefront integrator, in all its forms, against castRay in double precision.
+
+namespace {
+
+constexpr int side = 32, block = 4;
+
+RenderOptions wavefront_options(std::uint64_t spp, std::uint64_t seed = 1) {
+  RenderOptions options;
+  options.width = options.height = side;
+  options.spp = spp;
+  options.seed = seed;
+  options.threads = 1;
+  return options;
+}
+
+using Blocks = std::vector<std::vector<double>>;
+
+/// Block means of renders with independent seeds.
+Blocks blocks_of(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
+  Blocks blocks;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    options.seed = 1000 + seed;
+    const RenderResult result = render(scene, options);
+    REQUIRE(result.film.nonfinite_samples == 0);
+    blocks.push_back(block_means(result.film.image(), block));
+  }
+  return blocks;
+}
+
+/// What castRay makes of a scene, with the variance of its mean.
+struct Expected {
+  std::vector<double> mean, variance;
+
+  explicit Expected(const Scene& scene, RenderOptions options = wavefront_options(16),
+                    std::uint64_t seeds = 24) {
+    options.integrator = Integrator::reference;
+    options.precision = Precision::float64;
+    options.sampler = SamplerKind::independent;
+    options.reuse.automatic = true;
+    options.isa = "auto";
+    const Blocks renders = blocks_of(scene, options, seeds);
+    for (std::size_t i = 0; i < renders[0].size(); ++i) {
+      Mean m;
+      for (const auto& r : renders) m.add(r[i]);
+      mean.push_back(m.mean());
+      variance.push_back(m.error() * m.error());
+    }
+  }
+
+  /// No block is off, at a false-alarm rate of 1e-4 a call, nor are all of them a little: 192 scores, of
+  /// which the root mean square has a standard error of 0.05.
+  void check(const std::string& what, const Scene& scene, const RenderOptions& options,
+             std::uint64_t seeds = 24) const {
+    const BlockScores scores = block_scores(blocks_of(scene, options, seeds), mean, variance);
+    CAPTURE(what, scores.rms, scores.largest);
+    CHECK(scores.largest < score_limit(scores.count, 1e-4));
+    CHECK(scores.rms < 1.25);
+  }
+};
+
+RenderOptions plain(RenderOptions options) {
+  options.reuse = {.automatic = false};
+  return options;
+}
+
+/// Cornell's box with another material on its boxes.
+Scene box_with(const std::function<void(Material&)>& change) {
+  Scene scene = standard_scene("cornell_conductor");
+  for (Material& m : scene.materials)
+    if (m.type == MaterialType::conductor) change(m);
+  return scene;
+}
+
+Scene with_detail(Scene scene) {
+  Texture texture{"checks", 2, 2, {{1, 1, 1}, {.2f, .5f, .9f}, {.9f, .4f, .2f}, {.6f, .6f, .6f}}};
+  scene.textures.push_back(texture);
+  scene.materials[0].kd_texture = 0;
+  scene.uvs = {{0, 0}, {2, 0}, {0, 1.5f}};
+  for (const Index3& t : scene.triangles) {
+    scene.triangle_uvs.push_back({0, 1, 2});
+    const auto first = static_cast<std::uint32_t>(scene.normals.size());
+    const Vec3f v0 = scene.positions[t[0]], v1 = scene.positions[t[1]], v2 = scene.positions[t[2]];
+    const Vec3f n = normalize(cross(v1 - v0, v2 - v0)), tilt = normalize(v1 - v0) * 0.3f;
+    scene.normals.insert(scene.normals.end(), {normalize(n + tilt), n, normalize(n - tilt)});
+    scene.triangle_normals.push_back({first, first + 1, first + 2});
+  }
+  return scene;
+}
+
+void check_scene(const std::string& name, const Scene& scene) {
+  const Expected expected(scene);
+  expected.check(name + ", shared", scene, wavefront_options(4));
+  expected.check(name + ", plain", scene, plain(wavefront_options(8)));
+}
+
+}  // namespace
+
+TEST_CASE("the wavefront agrees with castRay on the standard scenes", "[statistical]") {
+  for (const char* name : {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights",
+                           "cornell_obj", "one_triangle"})
+    check_scene(name, standard_scene(name));
+}
+
+TEST_CASE("the wavefront agrees with castRay on every material", "[statistical]") {
+  check_scene("mirror", box_with([](Material& m) { m.alpha = 0; }));
+  check_scene("narrow", box_with([](Material& m) { m.alpha = 0.05; }));
+  check_scene("glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0; }));
+  check_scene("rough glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; }));
+  check_scene("varnish", box_with([](Material& m) {
+                m.type = MaterialType::microfacet, m.alpha = 0, m.kd = {.6, .3, .1}, m.ks = {.05, .05, .05};
+              }));
+}
+
+TEST_CASE("the wavefront agrees with castRay on textures, smooth normals and an environment",
+          "[statistical]") {
+  check_scene("diffuse detail", with_detail(standard_scene("cornell_box")));
+  check_scene("microfacet detail", with_detail(standard_scene("cornell_microfacet")));
+  Scene sky = standard_scene("cornell_conductor");
+  sky.environment = {0.4, 0.6, 0.9};
+  check_scene("sky", sky);
+}
+
+TEST_CASE("every form of the wavefront has the same mean", "[statistical]") {
+  const Scene scene = standard_scene("cornell_conductor");
+  const Expected expected(scene);
+  const auto check = [&](const std::string& what, const std::function<void(RenderOptions&)>& change) {
+    RenderOptions options = wavefront_options(4);
+    change(options);
+    expected.check(what, scene, options);
+    expected.check(what + ", plain", scene, plain(options));
+  };
+  check("tree", [](RenderOptions& o) { o.accel = AccelKind::bvh; });
+  check("tree, generic", [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
+  check("scalar", [](RenderOptions& o) { o.isa = "scalar"; });
+  check("MIS", [](RenderOptions& o) { o.mis = Switch::on; });
+  check("independent numbers", [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
+  check("fixed roulette", [](RenderOptions& o) { o.rr = 0.7; });
+  check("64 suffixes", [](RenderOptions& o) { o.reuse = {false, 8, 8, 64}; });
+  check("4 suffixes", [](RenderOptions& o) { o.reuse = {false, 8, 8, 4}; });
+}
+
+TEST_CASE("a limited depth means the same to the wavefront", "[statistical]") {
+  const Scene scene = standard_scene("cornell_conductor");
+  for (const int depth : {1, 2, 3, 4}) {
+    RenderOptions options = wavefront_options(4);
+    options.max_depth = depth;
+    const Expected expected(scene, options);
+    for (const Switch mis : {Switch::on, Switch::off}) {
+      options.mis = mis;
+      expected.check("depth " + std::to_string(depth), scene, options);
+      expected.check("depth " + std::to_string(depth) + ", plain", scene, plain(options));
+    }
+  }
+}
+
+TEST_CASE("the furnace closes on the wavefront, with each technique on and off", "[statistical]") {
+  const Scene scene = standard_scene("furnace");
+  const Material& wall = scene.materials[0];
+  for (const bool shared : {true, false})
+    for (const Switch mis : {Switch::on, Switch::off})
+      for (const SamplerKind sampler : {SamplerKind::sobol, SamplerKind::independent}) {
+        RenderOptions options = wavefront_options(64);
+        options.mis = mis;
+        options.sampler = sampler;
+        if (!shared) options = plain(options);
+        Mean mean[3];
+        for (std::uint64_t seed = 0; seed < 16; ++seed) {
+          options.seed = seed;
+          Vec3d sum;
+          for (const Vec3f& p : render(scene, options).film.image().pixels) sum += Vec3d(p);
+          for (int c = 0; c < 3; ++c) mean[c].add(sum[c] / (side * side));
+        }
+        for (int c = 0; c < 3; ++c) {
+          CAPTURE(shared, static_cast<int>(mis), static_cast<int>(sampler), c, mean[c].error());
+          CHECK(std::abs(mean[c].mean() - wall.ke[c] / (1 - wall.kd[c])) < 4.5 * mean[c].error() + 1e-6);
+        }
+      }
+}
+
+TEST_CASE("a shared render has no bias that many seeds would show", "[statistical][long]") {
+  for (const char* name : {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights"}) {
+    const Scene scene = standard_scene(name);
+    Expected(scene, wavefront_options(256), 64).check(name, scene, wavefront_options(16), 512);
+  }
+}

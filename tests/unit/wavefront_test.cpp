@@ -1,0 +1,110 @@
+#include <catch2/catch.hpp>
+
+#include "core/sequences.h"
+#include "integrate/wavefront.h"
+#include "test_scenes.h"
+
+using namespace castray;
+using namespace castray::test;
+
+namespace {
+
+RenderOptions small(const std::string& isa) {
+  RenderOptions options;
+  options.width = 45;
+  options.height = 37;
+  options.spp = 4;
+  options.isa = isa;
+  return options;
+}
+
+/// The instruction sets that this processor has.
+std::vector<std::string> available_sets() {
+  std::vector<std::string> sets;
+  for (const char* name : {"scalar", "sse4", "avx2", "avx512"}) {
+    try {
+      sets.push_back(choose_kernel(name).name);
+    } catch (const std::exception&) {  // this processor does not have it
+    }
+  }
+  return sets;
+}
+
+bool has_fma(const std::string& set) { return set == "avx2" || set == "avx512"; }
+
+std::vector<Vec3f> pixels(const Scene& scene, const RenderOptions& options) {
+  return render(scene, options).film.image().pixels;
+}
+
+}  // namespace
+
+TEST_CASE("instruction sets with fused multiply-add give the same bytes") {
+  for (const char* name :
+       {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights", "furnace"})
+    for (const bool shared : {true, false}) {
+      const Scene scene = standard_scene(name);
+      std::vector<std::vector<Vec3f>> images;
+      for (const std::string& set : available_sets()) {
+        if (!has_fma(set)) continue;
+        RenderOptions options = small(set);
+        options.reuse.automatic = shared;
+        images.push_back(pixels(scene, options));
+      }
+      CAPTURE(name, shared);
+      for (const auto& image : images) CHECK(image == images[0]);
+    }
+}
+
+TEST_CASE("the generic kernel gives the same bytes where the arithmetic is the same") {
+  const Scene scene = standard_scene("cornell_box");
+  RenderOptions options = small("auto"), generic = options;
+  options.reuse = generic.reuse = {.automatic = false};
+  generic.generic = true;
+  const auto a = pixels(scene, options), b = pixels(scene, generic);
+  double difference = 0, sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += std::abs(luminance(a[i] - b[i]));
+    sum += luminance(a[i]);
+  }
+  CHECK(difference < 1e-3 * sum);  // the same paths; a few part where a rounding differs
+}
+
+TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") {
+  const Scene scene = standard_scene("cornell_conductor");
+  for (const bool shared : {true, false}) {
+    RenderOptions options = small("auto");
+    options.reuse.automatic = shared;
+    options.threads = 1;
+    const RenderResult whole = render(scene, options);
+    options.threads = 3;
+    CHECK(render(scene, options).film.image().pixels == whole.film.image().pixels);
+
+    options.samples = SampleRange{3, 1};
+    Film merged = render(scene, options).film;
+    options.samples = SampleRange{0, 3};
+    merged.merge(render(scene, options).film);
+    CHECK(merged.image().pixels == whole.film.image().pixels);
+
+    options.samples.reset();
+    options.crop = Window{0, 0, 11, 6, 30, 29};
+    const Film crop = render(scene, options).film;
+    for (int y = 6; y < 29; ++y)
+      for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.film.mean(x, y));
+  }
+}
+
+TEST_CASE("the kernels draw the numbers of sample_block") {
+  for (const std::string& set : available_sets())
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::independent})
+      for (std::uint32_t i = 0; i < 2000; ++i) {
+        const std::uint32_t key = hash32(i), index = hash32(i + 7) >> 12, block = i % 23;
+        float u[4];
+        choose_kernel(set).sample_block(kind == SamplerKind::sobol, key, index, block, u);
+        const std::array<float, 4> expected = sample_block(kind, key, index, block);
+        REQUIRE(std::equal(u, u + 4, expected.begin()));
+      }
+}
+
+TEST_CASE("an unknown instruction set is refused with the known ones") {
+  CHECK_THROWS_WITH(choose_kernel("avx3"), Catch::Contains("avx2"));
+}
