@@ -124,7 +124,7 @@ TEST_CASE("SIGINT and SIGTERM save what was rendered and exit with 130") {
   }
 }
 
-TEST_CASE("--time-limit stops early, says so and exits with 1") {
+TEST_CASE("a time limit stops early, says so and exits with 1") {
   const TemporaryFolder folder;
   const RunResult result = run_castray(endless({"--time-limit", "0.2", "--stats", "s.json"}), folder.path());
   CHECK(result.exit_code == 1);
