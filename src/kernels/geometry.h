@@ -87,8 +87,10 @@ CASTRAY_INLINE HitPoint facet_point(const KernelScene& scene, const Vec& o, cons
           gather(&facet.material, record) * uint32_t{material_floats}};
 }
 
-/// The point from its barycentrics; the error of each coordinate is at most gamma(7) times the sum of the
-/// terms' magnitudes, and one rounding more for the step along the normal.
+/// The point from its barycentrics. The error of each coordinate is at most gamma(7) times the sum of the
+/// terms' magnitudes, and one rounding more for the step along the normal; the ray/triangle test adds its own
+/// (error_of_test in core/error_bounds.h), without which triangles in the plane of an axis would shadow
+/// themselves.
 CASTRAY_INLINE HitPoint triangle_point(const KernelScene& scene, Float b1, Float b2, Uint primitive) {
   const TriangleTable& table = scene.triangles;
   const Corners corners = corners_of(table.corners, primitive);
@@ -102,7 +104,10 @@ CASTRAY_INLINE HitPoint triangle_point(const KernelScene& scene, Float b1, Float
   const Vec p0 = v0 * b0, p1 = v1 * b1, p2 = v2 * b2;
   const Vec size{abs(p0.x) + abs(p1.x) + abs(p2.x), abs(p0.y) + abs(p1.y) + abs(p2.y),
                  abs(p0.z) + abs(p1.z) + abs(p2.z)};
-  const Float error = dot(Vec{abs(normal.x), abs(normal.y), abs(normal.z)}, size) * Float(9 * 0x1p-24f);
+  const Vec slope{abs(normal.x), abs(normal.y), abs(normal.z)};
+  const Vec reach{max(abs(e1.x), abs(e2.x)), max(abs(e1.y), abs(e2.y)), max(abs(e1.z), abs(e2.z))};
+  const Float test_error = max_component(reach) * (slope.x + slope.y + slope.z);
+  const Float error = fma(dot(slope, size), Float(9 * 0x1p-24f), test_error * Float(24 * 0x1p-24f));
   const Uint word = gather(table.materials, primitive >> 1);
   const Uint id = select((primitive & 1u) == Uint(1u), word >> 16, word & 0xffffu);
   return {p0 + p1 + p2, normal, error, id * uint32_t{material_floats}};

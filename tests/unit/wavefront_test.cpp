@@ -108,3 +108,29 @@ TEST_CASE("the kernels draw the numbers of sample_block") {
 TEST_CASE("an unknown instruction set is refused with the known ones") {
   CHECK_THROWS_WITH(choose_kernel("avx3"), Catch::Contains("avx2"));
 }
+
+TEST_CASE("a floor in the plane of an axis does not shadow itself") {
+  // the middle of the scene is on the floor, so that its coordinates there are exactly zero
+  SceneSketch sketch;
+  Material floor, lamp;
+  floor.kd = {0.5, 0.5, 0.5};
+  lamp.ke = {1, 1, 1};
+  lamp.two_sided_emission = true;
+  const std::uint16_t grey = sketch.add_material(floor), light = sketch.add_material(lamp);
+  sketch.add_quad({-1, 0, -1}, {-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, grey);
+  sketch.add_quad({-1, 0.5f, -1}, {1, 0.5f, -1}, {1, 0.5f, 1}, {-1, 0.5f, 1}, light);
+  sketch.scene.camera = make_camera({0, 0.3, -2}, {0, 0, 0}, {0, 1, 0}, 30);
+  RenderOptions options = small("auto");
+  options.spp = 64;
+  options.accel = AccelKind::list;
+  const Film list = render(sketch.scene, options).film;
+  options.accel = AccelKind::bvh;
+  const Film tree = render(sketch.scene, options).film;
+  double difference = 0, sum = 0;
+  for (int y = 0; y < 37; ++y)
+    for (int x = 0; x < 45; ++x) {
+      difference += luminance(list.mean(x, y) - tree.mean(x, y));
+      sum += luminance(list.mean(x, y));
+    }
+  CHECK(std::abs(difference) < 1e-3 * sum);  // the same numbers are drawn: only roundings differ
+}
