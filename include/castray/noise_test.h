@@ -10,7 +10,8 @@ namespace castray {
 struct NoiseTest {
   double alpha = 0;       ///< family-wise false-alarm rate: two renders of one scene fail at most this often
   std::size_t tests = 0;  ///< blocks of all sizes times channels
-  double p = 1;           ///< smallest p-value, times `tests` (Bonferroni), at most 1
+  bool paired = false;    ///< replicates of one seed were held against each other, one by one
+  double p = 1;           ///< smallest p-value, corrected for the number of tests (Bonferroni), at most 1
   bool differs() const { return p < alpha; }
 
   // Where p is smallest:
@@ -21,10 +22,11 @@ struct NoiseTest {
 };
 
 /// Compares the mean of each block of 8x8, 16x16, ... pixels, up to the whole window, in each channel by a
-/// t-test on the replicates' means (Welch 1947: unequal variances, the number of replicates may differ).
-/// Films are taken for independent; where they share seeds the test is more careful, not less. Differences of
-/// 4 units in the last place of a float are never counted. Throws InputError unless both films show one
-/// window and keep at least two replicates.
+/// t-test on the replicates' means. Each block size has an equal share of alpha, each test of a size an equal
+/// share of that. Films of one seed and the same samples share most of their noise: the differences of their
+/// replicates are tested. Else the films are independent (Welch 1947: unequal variances; the number of
+/// replicates may differ). Differences below 2^-17 of the mean, which the order of float operations can make,
+/// are never counted. Throws InputError unless both films show one window and keep at least two replicates.
 NoiseTest test_noise(const Film& film, const Film& reference, double alpha);
 
 /// The probability that Student's t with `freedom` degrees of freedom lies beyond +-t.

@@ -75,6 +75,7 @@ json to_json(const Comparison& c) {
   if (c.noise)
     object["ztest"] = {{"alpha", c.noise->alpha},
                        {"tests", c.noise->tests},
+                       {"paired", c.noise->paired},
                        {"p", c.noise->p},
                        {"block", {c.noise->x0, c.noise->y0, c.noise->x1, c.noise->y1}},
                        {"channel", c.noise->channel},

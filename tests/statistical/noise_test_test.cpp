@@ -27,6 +27,7 @@ Film noisy_film(std::uint32_t seed, int spp, float factor = 1) {
           film.add(x, y, noise * (2 * ramp * factor));
         }
     film.samples = {{r * replicate_length, static_cast<std::uint64_t>(spp)}};
+    film.key = "seed=" + std::to_string(seed);
     film.keep_replicates();
     if (r == 0)
       whole = film;
@@ -66,6 +67,10 @@ TEST_CASE("a change of one percent is found, with its place") {
   const NoiseTest itself = test_noise(noisy_film(3, 64), noisy_film(3, 64), 0.01);
   CHECK_FALSE(itself.differs());
   CHECK(itself.p == 1);
+  CHECK(itself.paired);
+  const NoiseTest same_seed = test_noise(noisy_film(3, 4, 1.001f), noisy_film(3, 4), 0.01);
+  CHECK(same_seed.differs());  // the noise is common to both and falls out
+  CHECK_FALSE(test_noise(noisy_film(4, 4, 1.001f), noisy_film(3, 4), 0.01).differs());
   CHECK(itself.tests == 3 * (6 + 2 + 1));
 }
 

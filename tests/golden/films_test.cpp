@@ -1,0 +1,88 @@
+#include <catch2/catch.hpp>
+
+#include "castray/film.h"
+#include "castray/noise_test.h"
+#include "castray/render.h"
+#include "castray/scene.h"
+
+using namespace castray;
+
+namespace {
+
+const std::string root = CASTRAY_ROOT;
+
+RenderOptions options_of(int side, std::uint64_t seed) {
+  RenderOptions options;
+  options.width = options.height = side;
+  options.spp = 64;
+  options.seed = seed;
+  return options;
+}
+
+Film render_film(const Scene& scene, const RenderOptions& options) {
+  return render_replicates(scene, options, 16).film;
+}
+
+bool available(const std::string& isa) {
+  if (isa == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (isa == "avx512")
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+  return isa != "sse4" || __builtin_cpu_supports("sse4.2");
+}
+
+}  // namespace
+
+// tests/golden/films was rendered by the reference integrator; each comparison has a false-alarm rate of 0.1
+// %.
+TEST_CASE("every kernel renders every scene as the stored films show it") {
+  const std::string isa = GENERATE("scalar", "sse4", "avx2", "avx512");
+  if (!available(isa)) return;
+  for (const std::string name : {"cornell_box", "cornell_conductor", "cornell_lights", "cornell_microfacet",
+                                 "cornell_obj", "furnace", "one_triangle"}) {
+    RenderOptions options = options_of(48, 2);
+    options.isa = isa;
+    const Film film = render_film(load_scene(root + "/scenes/" + name + ".json"), options);
+    const NoiseTest test = test_noise(film, read_film(root + "/tests/golden/films/" + name + ".film"), 0.001);
+    INFO(isa << ", " << name << ": p = " << test.p << ", channel " << test.channel << ", pixels " << test.x0
+             << "," << test.y0 << " to " << test.x1 << "," << test.y1 << ": " << test.mean << " against "
+             << test.mean_reference);
+    CHECK_FALSE(test.differs());
+  }
+}
+
+TEST_CASE("a change of 1 % of one material's kd is caught at 64 spp") {
+  Scene scene = load_scene(root + "/scenes/cornell_box.json");
+  const Film before = render_film(scene, options_of(128, 1));
+  const auto change = [&](const std::string& name) {
+    Scene changed = scene;
+    for (Material& material : changed.materials)
+      if (material.name == name) material.kd *= 1.01;
+    return changed;
+  };
+  for (const char* name : {"white", "red", "green"}) {
+    INFO(name);
+    const NoiseTest same_seed = test_noise(render_film(change(name), options_of(128, 1)), before, 0.01);
+    CHECK(same_seed.paired);
+    CHECK(same_seed.differs());
+  }
+  CHECK(test_noise(render_film(change("white"), options_of(128, 2)), before, 0.01).differs());
+  CHECK_FALSE(test_noise(render_film(scene, options_of(128, 2)), before, 0.01).differs());
+}
+
+// At alpha = 0.05 at most 50 + 4 sqrt(47.5) = 77 of 1000 pairs of seeds may raise an alarm.
+TEST_CASE("a thousand unchanged seeds raise no more than the stated rate of alarms", "[long]") {
+  const Scene scene = load_scene(root + "/scenes/cornell_box.json");
+  RenderOptions options = options_of(32, 0);
+  options.spp = 32;
+  int alarms = 0;
+  for (std::uint64_t pair = 0; pair < 1000; ++pair) {
+    options.seed = 2 * pair;
+    const Film a = render_replicates(scene, options, 8).film;
+    options.seed = 2 * pair + 1;
+    alarms += test_noise(a, render_replicates(scene, options, 8).film, 0.05).differs();
+  }
+  INFO(alarms << " alarms of 1000");
+  CHECK(alarms <= 77);
+  CHECK(alarms >= 5);
+}
