@@ -45,13 +45,14 @@ Taps normalised(Taps taps) {
 
 Plane convolve(const Plane& plane, const Taps& along_x, const Taps& along_y, Border border) {
   const int width = plane.width, height = plane.height;
+  const bool worth_threads = plane.values.size() > 1 << 15;
   Plane rows(width, height), result(width, height);
-#pragma omp parallel for
+#pragma omp parallel for if (worth_threads)
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       rows.at(x, y) = sum_at(&plane.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)], x,
                              width, 1, along_x, border);
-#pragma omp parallel for
+#pragma omp parallel for if (worth_threads)
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       result.at(x, y) = sum_at(&rows.values[static_cast<std::size_t>(x)], y, height, width, along_y, border);

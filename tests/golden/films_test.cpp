@@ -23,7 +23,33 @@ Film render_film(const Scene& scene, const RenderOptions& options) {
   return render_replicates(scene, options, 16).film;
 }
 
+bool available(const std::string& isa) {
+  if (isa == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (isa == "avx512")
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+  return isa != "sse4" || __builtin_cpu_supports("sse4.2");
+}
+
 }  // namespace
+
+// tests/golden/films was rendered by the reference integrator; each comparison has a false-alarm rate of 0.1
+// %.
+TEST_CASE("every kernel renders every scene as the stored films show it") {
+  const std::string isa = GENERATE("scalar", "sse4", "avx2", "avx512");
+  if (!available(isa)) return;
+  for (const std::string name : {"cornell_box", "cornell_conductor", "cornell_lights", "cornell_microfacet",
+                                 "cornell_obj", "furnace", "one_triangle"}) {
+    RenderOptions options = options_of(48, 2);
+    options.isa = isa;
+    const Film film = render_film(load_scene(root + "/scenes/" + name + ".json"), options);
+    const NoiseTest test = test_noise(film, read_film(root + "/tests/golden/films/" + name + ".film"), 0.001);
+    INFO(isa << ", " << name << ": p = " << test.p << ", channel " << test.channel << ", pixels " << test.x0
+             << "," << test.y0 << " to " << test.x1 << "," << test.y1 << ": " << test.mean << " against "
+             << test.mean_reference);
+    CHECK_FALSE(test.differs());
+  }
+}
 
 TEST_CASE("a change of 1 % of one material's kd is caught at 64 spp") {
   Scene scene = load_scene(root + "/scenes/cornell_box.json");
