@@ -16,6 +16,7 @@ RenderOptions options_of(int side, std::uint64_t seed) {
   options.width = options.height = side;
   options.spp = 64;
   options.seed = seed;
+  options.threads = 1;  // other tests run beside this one
   return options;
 }
 
