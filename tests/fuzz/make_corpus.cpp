@@ -7,7 +7,6 @@
 
 #include "castray/film.h"
 #include "castray/image.h"
-#include "cli/render_flags.h"
 #include "core/files.h"
 #include "image/formats.h"
 #include "temporary_folder.h"
@@ -89,22 +88,22 @@ void write_mtls(const fs::path& folder) {
 }
 
 void write_arguments(const fs::path& folder) {
-  std::string every_flag = "render\ns.json\n", every_default = "=";
-  for (const cli::RenderFlag& flag : cli::render_flags()) {
-    every_flag +=
-        std::string("--") + flag.name + "\n" + (flag.metavar ? std::string(flag.metavar) + "\n" : "");
-    if (flag.in_scene)
-      write_seed(folder, flag.name,
-                 std::string("=") + flag.name + " " + (flag.metavar ? flag.metavar : "on"));
-  }
-  write_seed(folder, "render", every_flag);
-  write_seed(folder, "values",
-             "=spp 64\nsize 640x480\nrr 0.5\nmax-depth none\nreuse 8x8:32\ntone gamma:0.6\nseed "
-             "18446744073709551615");
+  write_seed(
+      folder, "render",
+      "render\ns.json\n--spp\n64\n--size\n640x480\n--crop=0,0,8,8\n--generic\n-o\na.png\n-o\nb.film\n-q");
   write_seed(folder, "compare", "compare\na.png\nb.pfm\n--max\nrelmse=1e-3\n--json\nc.json");
   write_seed(folder, "merge", "merge\na.film\nb.film\n-o\nc.film");
   write_seed(folder, "convert", "convert\na.pfm\n-o\nb.png\n--exposure=1\n--tone=srgb");
+  write_seed(folder, "bench", "bench\na.json\n--spp\n1,4\n--seeds\n2");
+  write_seed(folder, "info", "info\ns.json");
   write_seed(folder, "help", "--help");
+  write_seed(
+      folder, "values",
+      "=spp 64\nsize 640x480\nrr 0.5\nmax-depth none\nreuse 8x8:32\ntone gamma:0.6\nseed "
+      "18446744073709551615\n"
+      "sampler sobol\njitter off\nintegrator reference\nprecision double\nepsilon auto\nlights tree\nmis on\n"
+      "fault black-light\nthreads 2\nisa auto\naccel bvh\nbuild fast\ngeneric on\ntime-limit 1e3\n"
+      "target-error 0.1\ncheckpoint-every 60\nexposure -1\nprogress lines");
 }
 
 }  // namespace
