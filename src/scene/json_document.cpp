@@ -88,10 +88,12 @@ class TreeBuilder : public nlohmann::json_sax<Json> {
   // Deeper than any scene; the tree is walked and destroyed by recursion.
   static constexpr std::size_t greatest_depth = 64;
 
+  /// As the parser does: to a line's end, which may be CR, or a zero byte; or to "*/".
   void skip_comment() {
-    const bool line_comment = text_.substr(cursor_).starts_with("//");
-    const std::size_t end = text_.find(line_comment ? "\n" : "*/", cursor_ + 2);
-    cursor_ = end == std::string_view::npos ? text_.size() : end + (line_comment ? 1 : 2);
+    const bool is_line = text_.substr(cursor_).starts_with("//");
+    const std::size_t end =
+        is_line ? text_.find_first_of(std::string_view("\n\r\0", 3), cursor_) : text_.find("*/", cursor_ + 2);
+    cursor_ = end == std::string_view::npos ? text_.size() : end + (is_line ? 1 : 2);
   }
 
   void skip_string() {
