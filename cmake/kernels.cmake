@@ -9,8 +9,10 @@ set(CASTRAY_ISA_sse4 -msse4.2 -mpopcnt)
 set(CASTRAY_ISA_avx2 -mavx2 -mfma -mbmi -mbmi2 -mlzcnt -mpopcnt)
 set(CASTRAY_ISA_avx512 ${CASTRAY_ISA_avx2} -mavx512f -mavx512bw -mavx512vl -mavx512dq)
 
+set(CASTRAY_ISAS scalar sse4 avx2 avx512 CACHE STRING "Instruction sets to compile the kernels for")
+
 file(GLOB CASTRAY_KERNEL_SOURCES CONFIGURE_DEPENDS src/kernels/*.cpp)
-foreach(isa scalar sse4 avx2 avx512)
+foreach(isa IN LISTS CASTRAY_ISAS)
   add_library(castray_kernels_${isa} OBJECT ${CASTRAY_KERNEL_SOURCES})
   target_include_directories(castray_kernels_${isa} PRIVATE include src)
   # GCC 12 takes the undefined operands inside its own AVX-512 header for ours; and vectors that no function here passes
@@ -19,4 +21,5 @@ foreach(isa scalar sse4 avx2 avx512)
     $<$<CONFIG:Release>:${CASTRAY_OPTIMISE_${isa}}> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-psabi>)
   target_link_libraries(castray_kernels_${isa} PRIVATE castray_flags)
   target_sources(castray PRIVATE $<TARGET_OBJECTS:castray_kernels_${isa}>)
+  set_property(SOURCE src/integrate/isa.cpp APPEND PROPERTY COMPILE_DEFINITIONS CASTRAY_HAS_${isa})
 endforeach()

@@ -56,6 +56,10 @@ struct RenderOptions {
   LightSampling lights = LightSampling::automatic;
   Switch mis = Switch::automatic;
   bool jitter = true;
+  /// Biased, off by default: the part of each sample that its first bounce brings, light points at the
+  /// camera's hit excepted, is scaled down to have no component above this radiance. Hides rare bright
+  /// samples, and loses light.
+  std::optional<double> clamp_indirect;
   std::string isa = "auto";
   AccelKind accel = AccelKind::automatic;
   BuildQuality build = BuildQuality::automatic;

@@ -147,6 +147,11 @@ const RenderFlag flags[] = {
     {"mis", "on|off|auto", "multiple importance sampling of lights and BSDFs [auto]", estimator,
      [](Request r, Text f, Text t) { r.options.mis = parse_switch(f, t); }},
     {"reuse", "auto|off|WxH:N", "share N path suffixes in tiles of WxH pixels [auto]", estimator, set_reuse},
+    {"clamp-indirect", "X|off",
+     "scale a sample's indirect light down to X: fewer bright dots, but biased [off]", estimator,
+     [](Request r, Text f, Text t) {
+       r.options.clamp_indirect = t == "off" ? std::nullopt : std::optional(parse_number(f, t));
+     }},
     {"fault", "NAME", "show a classic fault (docs/classic-faults.md) on the reference", estimator,
      [](Request r, Text f, Text t) {
        r.options.fault = parse_choice<Fault>(f, t,

@@ -73,6 +73,8 @@ void RenderReport::print_summary(const std::vector<std::filesystem::path>& outpu
              scene.triangles.size(), film.width(), film.height(), spp(), s.kernel,
              s.isa == "none" ? "" : " (" + s.isa + ")", s.threads);
   if (!s.skipped.empty()) fmt::print(stderr, "skipped: {}\n", joined(s.skipped));
+  if (options.clamp_indirect)
+    fmt::print(stderr, "biased: --clamp-indirect {:g} loses indirect light\n", *options.clamp_indirect);
   fmt::print(
       stderr,
       "{:.3f} s for the BVH, {:.3f} s to render, {:.2f} Msamples/s, {:.2f} Mrays/s, {:.1f} MiB at most\n",
@@ -111,18 +113,19 @@ std::string RenderReport::json() const {
       {"mrays_per_second", millions_per_second(s.rays, s.render_seconds)},
       {"peak_memory_bytes", peak_memory_bytes()},
       {"nonfinite_samples", result.film.nonfinite_samples},
+      {"biased", options.clamp_indirect.has_value()},
       {"stopped", name_of(s.stopped)}};
   return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 Metadata RenderReport::metadata() const {
-  return {{"Software", "castray " CASTRAY_VERSION},
-          {"castray:version", CASTRAY_VERSION},
-          {"castray:scene", scene.name},
-          {"castray:options", result.film.key},
-          {"castray:spp", std::to_string(spp())},
-          {"castray:seed", std::to_string(options.seed)},
-          {"castray:seconds", fmt::format("{:.3f}", result.stats.render_seconds)}};
+  Metadata metadata = describe(result.film);
+  metadata["Software"] = "castray " CASTRAY_VERSION;
+  metadata["castray:version"] = CASTRAY_VERSION;
+  metadata["castray:scene"] = scene.name;
+  metadata["castray:spp"] = std::to_string(spp());
+  metadata["castray:seconds"] = fmt::format("{:.3f}", result.stats.render_seconds);
+  return metadata;
 }
 
 std::uint64_t RenderReport::spp() const { return options.samples ? options.samples->count : options.spp; }

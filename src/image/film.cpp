@@ -170,9 +170,11 @@ void Film::merge(const Film& other) {
 
 Metadata describe(const Film& film) {
   Metadata metadata{{"castray:options", film.key}};
-  for (const std::string& item : items_of(film.key))
+  for (const std::string& item : items_of(film.key)) {
     for (const std::string name : {"scene", "seed"})
       if (item.starts_with(name + "=")) metadata["castray:" + name] = item.substr(name.size() + 1);
+    if (item.starts_with("clamp-indirect=")) metadata["castray:biased"] = item;
+  }
   std::uint64_t spp = 0;
   for (const SampleRange& range : film.samples) spp += range.count;
   metadata["castray:spp"] = std::to_string(spp);

@@ -86,8 +86,9 @@ class CastRay {
     // roulette, lobe, light
     const std::array<float, 4> choice = draw(path, PathBlocks::choice(path.vertex));
     radiance += direct_light(x, path, static_cast<double>(choice[2]) + choice[3] * 0x1p-24);
-    radiance += indirect_light(x, path, T(choice[0]), T(choice[1]));
-    return radiance;
+    const bool clamps = options_.clamp_indirect && path.vertex == 0;
+    const Vec3<T> indirect = indirect_light(x, path, T(choice[0]), T(choice[1]));
+    return radiance + (clamps ? clamped(indirect, T(*options_.clamp_indirect)) : indirect);
   }
 
   /// Le, or the part of it that this way of finding it has to count.
@@ -145,6 +146,11 @@ class CastRay {
                             : mis_          ? Arrival::shared_with_lights(sample.pdf)
                                             : Arrival::none();
     return cast_ray({segments_.origin(x, wi), wi}, path, arrival) * (sample.weight / survival);
+  }
+
+  static Vec3<T> clamped(const Vec3<T>& radiance, T most) {
+    const T brightest = max_component(radiance);
+    return brightest > most ? radiance * (most / brightest) : radiance;
   }
 
   const Scene& scene_;

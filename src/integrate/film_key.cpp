@@ -100,6 +100,7 @@ std::string film_key(const Scene& scene, const RenderOptions& o) {
   add("jitter", o.jitter ? "on" : "off");
   add("reuse",
       o.reuse.automatic ? "auto" : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
+  if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
   if (o.fault != Fault::none) add("fault", static_cast<int>(o.fault));
   return key;
 }

@@ -49,6 +49,7 @@ void check_numbers(const RenderOptions& o) {
   require(o.threads >= 0 && o.threads <= 4096,
           fmt::format("--threads {}: must be between 1 and 4096", o.threads));
   positive("epsilon", o.epsilon);
+  positive("clamp-indirect", o.clamp_indirect);
   positive("time-limit", o.time_limit);
 }
 

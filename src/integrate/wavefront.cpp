@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -40,6 +41,8 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   k.fixed_roulette = options.rr.has_value();
   k.survival = static_cast<float>(options.rr.value_or(1.0));
   k.max_depth = static_cast<std::uint32_t>(options.max_depth);
+  k.most_indirect =
+      static_cast<float>(options.clamp_indirect.value_or(std::numeric_limits<double>::infinity()));
   k.mis = plan.mis;
   k.suffixes = plan.suffixes;
   k.light_points = plan.light_points;

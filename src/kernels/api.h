@@ -134,12 +134,13 @@ struct KernelOptions {
   bool sobol;
   bool jitter;
   bool fixed_roulette;
-  float survival;      ///< of fixed roulette
-  uint32_t max_depth;  ///< path edges; 0: no limit
-  bool mis;            ///< emission found by BSDF sampling shares with light sampling
-  int suffixes;        ///< of each tile's pixels whose paths are traced on; 0: no sharing
-  int light_points;    ///< shared by a tile
-  uint32_t seed;       ///< hashed; pixel_key starts from it
+  float survival;       ///< of fixed roulette
+  uint32_t max_depth;   ///< path edges; 0: no limit
+  float most_indirect;  ///< greatest component of a sample's indirect part; infinity: no bound
+  bool mis;             ///< emission found by BSDF sampling shares with light sampling
+  int suffixes;         ///< of each tile's pixels whose paths are traced on; 0: no sharing
+  int light_points;     ///< shared by a tile
+  uint32_t seed;        ///< hashed; pixel_key starts from it
 };
 
 /// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.

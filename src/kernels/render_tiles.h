@@ -18,6 +18,7 @@ struct Scratch {
   Gathered gathered;
   VisibilityScratch visibility;
   Box boxes[max_tiles];
+  VecArray<batch_size> direct;  ///< radiance of each pixel without what its first bounce brings
 };
 
 /// Automatic roulette starts at this vertex; the same as first_roulette_vertex of the reference.
@@ -29,6 +30,40 @@ CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges)
   return options.max_depth == 0 || edges <= options.max_depth;
 }
 
+CASTRAY_INLINE bool clamps_indirect(const KernelOptions& options) {
+  return options.most_indirect < __builtin_inff();
+}
+
+/// What the tile's light points and suffixes have brought to pixels i to i + width - 1.
+template <uint32_t features>
+CASTRAY_INLINE Vec reflected(const Scratch& s, int i) {
+  const Vec sum = load(s.gathered.sum, i);
+  return (features & feature_materials) ? sum : sum * load(s.camera.albedo, i);
+}
+
+/// Keeps the radiance so far, and what is gathered so far, as the direct part of each sample.
+CASTRAY_INLINE void keep_direct(const Context& c, Scratch& s) {
+  if (!clamps_indirect(c.options)) return;
+  for (int i = 0; i < c.job.tiles * tile_pixels; i += width) store(s.direct, i, load(s.radiance, i));
+}
+template <uint32_t features>
+CASTRAY_INLINE void add_gathered_to_direct(const Context& c, Scratch& s) {
+  if (!clamps_indirect(c.options)) return;
+  for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
+    store(s.direct, i, load(s.direct, i) + reflected<features>(s, i));
+}
+
+/// Scales the rest of each sample down to the greatest component that it may have.
+CASTRAY_INLINE void clamp_indirect(const Context& c, Scratch& s) {
+  if (!clamps_indirect(c.options)) return;
+  const Float most(c.options.most_indirect);
+  for (int i = 0; i < c.job.tiles * tile_pixels; i += width) {
+    const Vec whole = load(s.radiance, i), direct = load(s.direct, i), indirect = whole - direct;
+    const Float brightest = max_component(indirect);
+    store(s.radiance, i, select(brightest > most, fma(indirect, most / brightest, direct), whole));
+  }
+}
+
 /// Lights the vertices, which are number `vertex` of their paths, and follows the paths to their ends.
 template <uint32_t features>
 CASTRAY_INLINE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
@@ -37,6 +72,7 @@ CASTRAY_INLINE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t 
   for (; may_have_edges(c.options, vertex + 2); ++vertex) {
     light<features>(c, *current, vertex, s.shadow_rays);
     add_unblocked<features>(c, s.ends, s.shadow_rays, s.radiance);
+    if (vertex == 0) keep_direct(c, s);
     scatter<features>(c, *current, vertex, roulette, s.paths);
     if (s.paths.count == 0) return;
     closest<features>(c, s.paths, s.ends, false, s.hits);
@@ -86,6 +122,7 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
   }
   for (int tile = 0; tile < c.job.tiles; ++tile) s.boxes[tile] = bounds_of(s.camera, tile * tile_pixels);
   gather_light<features>(c, s.camera, s.boxes, s.ends, s.visibility, s.gathered);
+  add_gathered_to_direct<features>(c, s);
   start_suffixes<features>(c, s.camera, s.suffixes, s.paths);
   closest<features>(c, s.paths, s.ends, false, s.hits);
   surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
@@ -94,13 +131,7 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
   follow<features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
   if constexpr (features & feature_materials) follow_glossy<features>(c, s);
   gather_suffixes<features>(c, s.camera, s.boxes, s.ends, s.suffixes, s.radiance, s.visibility, s.gathered);
-  for (int i = 0; i < n; i += width) {
-    const Vec sum = load(s.gathered.sum, i);
-    const Vec reflected = (features & feature_materials) ? sum : sum * load(s.camera.albedo, i);
-    store(s.radiance.x + i, load(s.radiance.x + i) + reflected.x);
-    store(s.radiance.y + i, load(s.radiance.y + i) + reflected.y);
-    store(s.radiance.z + i, load(s.radiance.z + i) + reflected.z);
-  }
+  for (int i = 0; i < n; i += width) store(s.radiance, i, load(s.radiance, i) + reflected<features>(s, i));
 }
 
 template <uint32_t features>
@@ -113,10 +144,12 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   camera_rays(c, s.paths);
   closest<features>(c, s.paths, s.ends, true, s.hits);
   surfaces<features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
+  keep_direct(c, s);
   if (options.suffixes > 0 && may_have_edges(options, 2))
     share<features>(c, s);
   else
     follow<features>(c, s, s.camera, 0, first_roulette);
+  clamp_indirect(c, s);
   for (int i = 0; i < job.tiles * tile_pixels; ++i) {
     result.radiance[0][i] = s.radiance.x[i];
     result.radiance[1][i] = s.radiance.y[i];

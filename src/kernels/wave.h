@@ -111,6 +111,14 @@ struct Radiance {
   }
 };
 
+/// Slots i to i + width - 1.
+CASTRAY_INLINE Vec load(const Radiance& r, int i) { return {load(r.x + i), load(r.y + i), load(r.z + i)}; }
+CASTRAY_INLINE void store(Radiance& r, int i, Vec v) {
+  store(r.x + i, v.x);
+  store(r.y + i, v.y);
+  store(r.z + i, v.z);
+}
+
 /// The scene, what is asked, and the running count of rays, as all stages get them.
 struct Context {
   const KernelScene& scene;

@@ -206,6 +206,24 @@ TEST_CASE("render refuses what it does not understand, in one line, before it st
   }
 }
 
+TEST_CASE("--clamp-indirect is told to be biased in the log, the statistics and every output") {
+  const TemporaryFolder folder;
+  for (const bool clamps : {true, false}) {
+    std::vector<std::string> arguments{"--spp", "1", "--stats", "s.json"};
+    for (const char* name : {"x.png", "x.exr", "x.film"}) arguments.insert(arguments.end(), {"-o", name});
+    if (clamps) arguments.insert(arguments.end(), {"--clamp-indirect", "2"});
+    const RunResult result = render_small(folder, arguments);
+    REQUIRE(result.exit_code == 0);
+    CHECK((result.err.find("biased: --clamp-indirect 2") != std::string::npos) == clamps);
+    CHECK(stats_in(folder)["biased"] == clamps);
+    for (const char* name : {"x.png", "x.exr", "x.film"}) {
+      const auto metadata = read_image(folder / name).metadata;
+      CHECK(metadata.contains("castray:biased") == clamps);
+      if (clamps) CHECK(metadata.at("castray:biased") == "clamp-indirect=2");
+    }
+  }
+}
+
 TEST_CASE("an .obj is seen by an automatic view or by camera flags") {
   const TemporaryFolder folder;
   const std::string obj = CASTRAY_ROOT "/models/cornell_box/cornell_box.obj";

@@ -47,6 +47,8 @@ const std::vector<Case> cases = {
     render({"--rr", "x"}, "--rr 'x': must be a number"),
     render({"--epsilon", "-1"}, "--epsilon -1: must be a number above 0"),
     render({"--epsilon", "nan"}, "--epsilon 'nan': must be a number"),
+    render({"--clamp-indirect", "0"}, "--clamp-indirect 0: must be a number above 0"),
+    render({"--clamp-indirect", "inf"}, "--clamp-indirect 'inf': must be a number"),
     render({"--time-limit", "-1"}, "--time-limit -1: must be a number above 0"),
     render({"--exposure", "bright"}, "--exposure 'bright': must be a number"),
     // Sizes and windows

@@ -81,7 +81,7 @@ const std::vector<Case> cases = {
     in_line("unknown key, behind a comment", R"(  /* "x" { */ "camra": {},)",
             "s.json:2:15: unknown key 'camra' in the scene; did you mean 'camera'?"),
     in_line("unknown key, behind comments whose lines end in CR", "// a \"\r// b\r  \"camra\": {},",
-            "s.json:2:16: unknown key 'camra' in the scene; did you mean 'camera'?"),
+            "s.json:2:15: unknown key 'camra' in the scene; did you mean 'camera'?"),
     in_line("key twice", R"(  "image": {}, "image": {},)", "s.json:2:16: 'image' is there twice; remove one"),
     in_line("unknown camera key", R"(  "camera": { "fow": 40 },)",
             "s.json:2:15: unknown key 'fow' in \"camera\"; did you mean 'fov'?"),
