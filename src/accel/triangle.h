@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accel/lanes8.h"
 #include "accel/ray.h"
+#include "core/error_bounds.h"
 
 namespace castray {
 
@@ -11,11 +13,11 @@ namespace castray {
 /// accelerators answer "no hit" for the others. Scene space lies in [-1,1]^3, far from these bounds.
 template <class T>
 bool is_traceable(const Ray<T>& ray) {
-  const auto size = [](const Vec3<T>& v) {
-    return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z)));
-  };
-  return is_finite(ray.direction) && is_finite(ray.origin) && size(ray.direction) >= T(0x1p-60) &&
-         size(ray.direction) <= T(0x1p60) && size(ray.origin) <= T(0x1p34);
+  const Vec3<T> d = magnitude(ray.direction), o = magnitude(ray.origin);
+  constexpr T least = T(0x1p-60), most = T(0x1p60), farthest = T(0x1p34);
+  // comparisons with NaN are false
+  return (d.x >= least || d.y >= least || d.z >= least) && d.x <= most && d.y <= most && d.z <= most &&
+         o.x <= farthest && o.y <= farthest && o.z <= farthest;
 }
 
 /// a*b - c*d to two ulps, of the exact sign (but for underflow). Jeannerod, Louvet, Muller (2013), after
@@ -26,6 +28,11 @@ T difference_of_products(T a, T b, T c, T d) {
   const T error = std::fma(c, d, -cd);
   return std::fma(a, b, -cd) - error;
 }
+
+/// Eight triangles side by side: [vertex][axis][lane].
+struct TriangleLanes {
+  alignas(32) float vertex[3][3][8];
+};
 
 /// The ray/triangle test that every accelerator shares. Watertight: Woop, Benthin, Wald (2013),
 /// "Watertight Ray/Triangle Intersection".
@@ -51,6 +58,26 @@ class TriangleTest {
 
   /// The axis along which the direction is longest.
   int main_axis() const { return kz_; }
+
+  /// The lanes, as bits, whose triangles the ray may meet with 0 < t < t_max: all but those that `intersect`
+  /// rejects at first sight, and those wholly behind the origin or beyond t_max. As its weights never differ
+  /// in sign, a computed t is at most a few ulps outside the range of the vertices'.
+  unsigned candidates(const TriangleLanes& triangles, T t_max) const {
+    const T reach = t_max * std::abs(dz_) * T(1.001), low = dz_ > 0 ? 0 : -reach, high = dz_ > 0 ? reach : 0;
+    Lanes8<T> x[3], y[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+      const auto& v = triangles.vertex[k];
+      z[k] = __builtin_convertvector(lanes8(v[kz_]), Lanes8<T>) - origin_[kz_];
+      x[k] = __builtin_convertvector(lanes8(v[kx_]), Lanes8<T>) - origin_[kx_] - sx_ * z[k];
+      y[k] = __builtin_convertvector(lanes8(v[ky_]), Lanes8<T>) - origin_[ky_] - sy_ * z[k];
+    }
+    const Lanes8<T> u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2],
+                    w = x[1] * y[0] - y[1] * x[0];
+    const auto mixed = ((u > 0) | (v > 0) | (w > 0)) & ((u < 0) | (v < 0) | (w < 0));
+    const auto below = (z[0] < low) & (z[1] < low) & (z[2] < low);
+    const auto above = (z[0] > high) & (z[1] > high) & (z[2] > high);
+    return ~bits8(mixed | below | above) & 0xffu;
+  }
 
   /// Whether the line of the ray meets the triangle, at which t (of any sign), and where in it.
   bool intersect(const Vec3f& v0, const Vec3f& v1, const Vec3f& v2, T& t, T& b1, T& b2) const {

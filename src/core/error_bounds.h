@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "castray/vec.h"
 
@@ -47,6 +50,15 @@ TrianglePoint<T> point_on_triangle(const Vec3<T>& v0, const Vec3<T>& v1, const V
           (magnitude(a) + magnitude(b) + magnitude(c)) * gamma_bound<T>(7) + error_of_test(extent)};
 }
 
+/// The number next to a finite `x`, above or below; std::nextafter, inline.
+template <class T>
+T neighbour(T x, bool above) {
+  using Bits = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+  if (x == 0) return above ? std::numeric_limits<T>::denorm_min() : -std::numeric_limits<T>::denorm_min();
+  const Bits bits = std::bit_cast<Bits>(x);
+  return std::bit_cast<T>(bits + ((x > 0) == above ? 1 : -1));
+}
+
 /// The origin of a ray that leaves a surface on the side of `direction`: `p` pushed along the unit normal by
 /// the projection of its error bound, each coordinate rounded one step outward. Never on the other side of
 /// the surface, and no further from it than rounding demands (Pharr et al., Physically Based Rendering,
@@ -56,10 +68,7 @@ Vec3<T> offset_origin(const Vec3<T>& p, const Vec3<T>& error, const Vec3<T>& nor
                       const Vec3<T>& direction) {
   const T distance = dot(magnitude(normal), error);
   const Vec3<T> push = normal * (dot(direction, normal) < 0 ? -distance : distance);
-  const auto outward = [](T q, T step) {
-    constexpr T infinity = std::numeric_limits<T>::infinity();
-    return step > 0 ? std::nextafter(q, infinity) : step < 0 ? std::nextafter(q, -infinity) : q;
-  };
+  const auto outward = [](T q, T step) { return step == 0 ? q : neighbour(q, step > 0); };
   return {outward(p.x + push.x, push.x), outward(p.y + push.y, push.y), outward(p.z + push.z, push.z)};
 }
 

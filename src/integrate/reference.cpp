@@ -14,8 +14,8 @@ namespace castray {
 
 namespace {
 
-/// Up to this many triangles the list is faster than a tree.
-constexpr std::size_t list_up_to = 8;
+/// Up to about this many triangles the list is faster than a tree.
+constexpr std::size_t list_up_to = 64;
 
 /// The scene in the file's own coordinates, rounded to float: what a path tracer without re-centring works
 /// on.
