@@ -31,6 +31,25 @@ class SceneSketch {
     add_triangle({first, first + 2, first + 3}, material);
   }
 
+  /// Corners times `scale`, moved by `offset`; `inwards`: the sides that the normals point to are swapped.
+  void add_mesh(const std::vector<Vec3d>& positions, const std::vector<Index3>& triangles, double scale,
+                const Vec3d& offset, bool inwards, std::uint16_t material) {
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    for (const Vec3d& p : positions) scene.positions.emplace_back(p * scale + offset);
+    for (const Index3& t : triangles)
+      add_triangle({first + t[0], first + t[inwards ? 2 : 1], first + t[inwards ? 1 : 2]}, material);
+  }
+
+  /// A closed cube of half the side `half`.
+  void add_cube(double half, const Vec3d& middle, bool inwards, std::uint16_t material) {
+    std::vector<Vec3d> corners;
+    for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1. : -1., i & 2 ? 1. : -1., i & 4 ? 1. : -1.});
+    static const std::vector<Index3> faces = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5},
+                                              {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3},
+                                              {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+    add_mesh(corners, faces, half, middle, inwards, material);
+  }
+
  private:
   void add_triangle(const Index3& corners, std::uint16_t material) {
     if (scene.materials[material].emits())

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "castray/error.h"
+#include "castray/render.h"
+#include "integrate/wavefront.h"
+
+namespace castray::test {
+
+/// A way to render: integrator, instruction set, accelerator, shared or plain paths.
+struct Way {
+  std::string name;
+  RenderOptions options;
+};
+
+/// Each instruction set of this processor.
+inline std::vector<std::string> instruction_sets() {
+  std::vector<std::string> sets;
+  for (const char* name : {"scalar", "sse4", "avx2", "avx512"}) {
+    try {
+      sets.emplace_back(choose_kernel(name).name);
+    } catch (const InputError&) {  // this processor does not have it
+    }
+  }
+  return sets;
+}
+
+/// The reference in both precisions, and the wavefront with each instruction set, over list and tree, with
+/// shared and plain paths, all with the size and samples of `options`.
+inline std::vector<Way> every_way(const RenderOptions& options) {
+  std::vector<Way> ways;
+  for (const Precision precision : {Precision::float32, Precision::float64}) {
+    ways.push_back({precision == Precision::float32 ? "reference, float" : "reference, double", options});
+    ways.back().options.integrator = Integrator::reference;
+    ways.back().options.precision = precision;
+  }
+  for (const std::string& set : instruction_sets())
+    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
+      for (const bool shared : {true, false}) {
+        ways.push_back(
+            {set + (accel == AccelKind::list ? ", list" : ", tree") + (shared ? ", shared" : ", plain"),
+             options});
+        ways.back().options.isa = set;
+        ways.back().options.accel = accel;
+        ways.back().options.reuse.automatic = shared;
+      }
+  return ways;
+}
+
+}  // namespace castray::test
