@@ -2,7 +2,9 @@
 
 #include <signal.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "castray/film.h"
 #include "core/files.h"
@@ -203,6 +205,34 @@ TEST_CASE("render refuses what it does not understand, in one line, before it st
     CHECK(result.error_lines() == 1);
     CHECK_THAT(result.err, Contains("castray: error: ") && Contains(c.message));
     CHECK(folder.names().empty());
+  }
+}
+
+TEST_CASE("a sample that is not finite is told with the command that renders it again") {
+  const TemporaryFolder folder;
+  write_file(folder / "floor.obj", "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n");
+  // so bright that float overflows next to it
+  write_file(folder / "hot.json", R"({ "camera": { "position": [0, 0.2, 0.9], "look_at": [0, 0, 0] },
+    "materials": { "floor": { "type": "diffuse" }, "lamp": { "type": "diffuse", "ke": [1e38, 1e38, 1e38] } },
+    "meshes": [ { "obj": "floor.obj", "material": "floor" },
+      { "obj": "floor.obj", "material": "lamp", "transform": [ { "rotate": [1, 0, 0, 180] }, { "translate": [0, 0.3, 0] } ] } ] })");
+  for (const char* integrator : {"wavefront", "reference"}) {
+    const RunResult first = run_castray({"render", "hot.json", "--size", "8x8", "--spp", "16", "--seed", "3",
+                                         "--integrator", integrator, "--mis", "off", "--stats", "s.json"},
+                                        folder.path());
+    CAPTURE(integrator, first.err);
+    REQUIRE(first.exit_code == 0);
+    REQUIRE(stats_in(folder)["nonfinite_samples"] > 0);
+    const std::string begin = ": castray render ";
+    const std::size_t at = first.err.find(begin) + 2;
+    REQUIRE(at < first.err.size());
+    std::istringstream command(first.err.substr(at, first.err.find('\n', at) - at));
+    std::vector<std::string> words{std::istream_iterator<std::string>(command), {}};
+    words.erase(words.begin());
+    words.insert(words.end(), {"--stats", "s.json"});
+    REQUIRE(run_castray(words, folder.path()).exit_code == 0);
+    CHECK(stats_in(folder)["nonfinite_samples"] == 1);
+    CHECK(stats_in(folder)["paths"] == 1);
   }
 }
 
