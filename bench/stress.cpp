@@ -2,7 +2,9 @@
 // often it broke. Exits with 1 if it ever did.
 
 #include <fmt/core.h>
+#include <omp.h>
 
+#include <algorithm>
 #include <CLI/CLI.hpp>
 
 #include "castray/error.h"
@@ -42,17 +44,34 @@ std::vector<std::unique_ptr<Tracer>> make_trees(const MeshView& mesh, int thread
   return trees;
 }
 
+/// The rays are made and traced a million at a time: they take less memory than the mesh's trees.
 void test_leaks(Table& table, const ClosedShape& closed, double scale, double offset, std::size_t count,
                 int threads) {
+  constexpr std::size_t at_once = 1000000;
   const std::string test = "leaks, " + closed.name;
   const FloatMesh mesh = place(closed.shape, scale, offset);
-  const auto rays = rays_at_seams<float>(closed, mesh, scale, offset, count, 1);
-  for (const auto& tree : make_trees(mesh.view(), threads)) {
-    table.add(test, tree->name(), scale, offset, rays.size(), count_leaks(*tree, rays));
+  const auto trees = make_trees(mesh.view(), threads);
+  std::vector<std::size_t> leaks(trees.size());
+  for (std::size_t done = 0; done < count; done += at_once) {
+    const auto rays = rays_at_seams<float>(closed, mesh, scale, offset, std::min(at_once, count - done),
+                                           static_cast<std::uint32_t>(done / at_once));
+    for (std::size_t i = 0; i < trees.size(); ++i) leaks[i] += count_leaks(*trees[i], rays);
   }
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    table.add(test, trees[i]->name(), scale, offset, count, leaks[i]);
   const auto double_rays = rays_at_seams<double>(closed, mesh, scale, offset, count / 10, 2);
   table.add(test, "bvh2 double", scale, offset, double_rays.size(),
             count_leaks(Bvh::build(mesh.view(), threads), double_rays));
+}
+
+/// A list takes time in proportion to its length.
+void test_leaks_of_list(Table& table, double scale, double offset, std::size_t count) {
+  const ClosedShape closed = closed_icosphere(2);
+  const FloatMesh mesh = place(closed.shape, scale, offset);
+  const auto list = make_tracer("list", mesh.view(), choose_kernel("auto"));
+  list->build(1);
+  const auto rays = rays_at_seams<float>(closed, mesh, scale, offset, count, 3);
+  table.add("leaks, 80 triangles", list->name(), scale, offset, count, count_leaks(*list, rays));
 }
 
 void test_agreement(Table& table, const std::string& name, const Shape& shape, double scale, double offset,
@@ -93,6 +112,8 @@ bool run_all(std::size_t count, int threads) {
         closed.name == "torus knot" ? std::vector<double>{1e2, 1e4} : std::vector<double>{1e2, 1e4, 1e6};
     for (const double offset : offsets) test_leaks(table, closed, 1, offset, count / 10, threads);
   }
+  for (const double scale : {1e-6, 1.0, 1e6}) test_leaks_of_list(table, scale, 0, count / 10);
+  test_leaks_of_list(table, 1, 1e6, count / 10);
   for (const char* name : {"blob", "torus_knot", "terrain", "hair", "soup"}) {
     const Shape shape = make_shape(name, 20000, 1);
     for (const double scale : {1e-6, 1.0, 1e6})
@@ -110,7 +131,9 @@ int run(int argc, char** argv) {
   app.add_option("--rays", count, "of the largest tests; others take a tenth")
       ->check(CLI::Range(1000, 1000000000))
       ->capture_default_str();
-  app.add_option("--threads", threads, "of the builds")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--threads", threads, "to build and trace with")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -118,6 +141,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
+  omp_set_num_threads(threads);
   return run_all(count, threads) ? 0 : 1;
 }
 

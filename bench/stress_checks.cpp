@@ -1,5 +1,6 @@
 #include "stress_checks.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -170,37 +171,66 @@ std::vector<Ray<float>> odd_rays() {
   return rays;
 }
 
+namespace {
+
+/// Sums count(first, n) over stretches of [0, size), by all threads.
+template <class Count>
+std::size_t sum_in_parallel(std::size_t size, const Count& count) {
+  constexpr std::size_t stretch = 4096;
+  std::size_t sum = 0;
+#pragma omp parallel for reduction(+ : sum) schedule(dynamic)
+  for (std::size_t first = 0; first < size; first += stretch)
+    sum += count(first, std::min(stretch, size - first));
+  return sum;
+}
+
+struct Answers {
+  std::vector<Hit<float>> hits;
+  std::vector<std::uint8_t> occluded;
+
+  Answers(const Tracer& tracer, const RayArrays& rays, std::size_t first, std::size_t count)
+      : hits(count), occluded(count) {
+    tracer.closest(rays, first, count, hits.data());
+    tracer.occluded(rays, first, count, occluded.data());
+  }
+};
+
+bool same_bits(const Hit<float>& a, const Hit<float>& b) {
+  const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
+  return a.triangle == b.triangle && bits(a.t) == bits(b.t) && bits(a.b1) == bits(b.b1) &&
+         bits(a.b2) == bits(b.b2);
+}
+
+}  // namespace
+
 std::size_t count_leaks(const Tracer& tracer, const std::vector<Ray<float>>& rays) {
-  std::vector<Hit<float>> hits(rays.size());
-  tracer.closest(RayArrays(rays), 0, rays.size(), hits.data());
-  std::size_t leaks = 0;
-  for (const Hit<float>& hit : hits) leaks += !hit.found();
-  return leaks;
+  const RayArrays arrays(rays);
+  return sum_in_parallel(rays.size(), [&](std::size_t first, std::size_t count) {
+    const Answers answers(tracer, arrays, first, count);
+    std::size_t leaks = 0;
+    for (std::size_t i = 0; i < count; ++i) leaks += !answers.hits[i].found() || !answers.occluded[i];
+    return leaks;
+  });
 }
 
 std::size_t count_leaks(const Bvh& bvh, const std::vector<Ray<double>>& rays) {
-  std::size_t leaks = 0;
-  for (const Ray<double>& ray : rays) leaks += !bvh.closest(ray).found();
-  return leaks;
+  return sum_in_parallel(rays.size(), [&](std::size_t first, std::size_t count) {
+    std::size_t leaks = 0;
+    for (std::size_t i = first; i < first + count; ++i) leaks += !bvh.closest(rays[i]).found();
+    return leaks;
+  });
 }
 
 std::size_t count_disagreements(const Tracer& tracer, const Tracer& expected,
                                 const std::vector<Ray<float>>& rays) {
   const RayArrays arrays(rays);
-  std::vector<Hit<float>> hits(rays.size()), expected_hits(rays.size());
-  std::vector<std::uint8_t> occluded(rays.size());
-  tracer.closest(arrays, 0, rays.size(), hits.data());
-  tracer.occluded(arrays, 0, rays.size(), occluded.data());
-  expected.closest(arrays, 0, rays.size(), expected_hits.data());
-  const auto bits = [](float f) { return std::bit_cast<std::uint32_t>(f); };
-  std::size_t wrong = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Hit<float>&a = hits[i], &b = expected_hits[i];
-    const bool same = a.triangle == b.triangle && bits(a.t) == bits(b.t) && bits(a.b1) == bits(b.b1) &&
-                      bits(a.b2) == bits(b.b2);
-    wrong += !same || (occluded[i] != 0) != b.found();
-  }
-  return wrong;
+  return sum_in_parallel(rays.size(), [&](std::size_t first, std::size_t count) {
+    const Answers a(tracer, arrays, first, count), b(expected, arrays, first, count);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      wrong += !same_bits(a.hits[i], b.hits[i]) || (a.occluded[i] != 0) != b.hits[i].found();
+    return wrong;
+  });
 }
 
 }  // namespace castray

@@ -58,7 +58,7 @@ std::vector<Ray<float>> rays_around(const FloatMesh& mesh, std::size_t count, st
 /// in origin and direction.
 std::vector<Ray<float>> odd_rays();
 
-/// How many hit nothing.
+/// How many hit nothing, nearest or any. This and the next use all OpenMP threads.
 std::size_t count_leaks(const Tracer& tracer, const std::vector<Ray<float>>& rays);
 std::size_t count_leaks(const Bvh& bvh, const std::vector<Ray<double>>& rays);
 
