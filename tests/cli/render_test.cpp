@@ -40,8 +40,8 @@ nlohmann::json stats_in(const TemporaryFolder& folder) {
 
 TEST_CASE("render writes every output, tells the summary on stderr and its times in --stats") {
   const TemporaryFolder folder;
-  const RunResult result =
-      render_small(folder, {"--spp", "2", "-o", "x.png", "-o", "x.pfm", "-o", "x.film", "--stats", "s.json"});
+  const RunResult result = render_small(folder, {"--spp", "2", "--accel", "bvh", "-o", "x.png", "-o", "x.pfm",
+                                                 "-o", "x.film", "--stats", "s.json"});
   CHECK(result.exit_code == 0);
   CHECK(result.out.empty());
   CHECK_THAT(result.err,

@@ -42,8 +42,10 @@ Scene cornell_at(const Placement& place) {
   return load_scene(folder / "moved.json");
 }
 
-std::vector<std::vector<double>> renders(const Scene& scene, std::uint64_t first_seed) {
+std::vector<std::vector<double>> renders(const Scene& scene, Integrator integrator,
+                                         std::uint64_t first_seed) {
   RenderOptions options;
+  options.integrator = integrator;
   options.width = options.height = 64;
   options.spp = 16;
   std::vector<std::vector<double>> means;
@@ -83,8 +85,8 @@ TEST_CASE("a scene is the same shape at every scale and place, up to the roundin
 namespace {
 
 /// One false alarm in 1000 runs of all placements.
-void check_brightness(const std::vector<Placement>& places) {
-  const auto untouched = renders(cornell_at({}), 1);
+void check_brightness(const std::vector<Placement>& places, Integrator integrator) {
+  const auto untouched = renders(cornell_at({}), integrator, 1);
   std::vector<double> expected, variance;
   for (std::size_t i = 0; i < untouched[0].size(); ++i) {
     Mean mean;
@@ -94,7 +96,7 @@ void check_brightness(const std::vector<Placement>& places) {
   }
   for (const Placement& place : places) {
     INFO("scale " << place.scale << ", offset " << place.offset);
-    const BlockScores scores = block_scores(renders(cornell_at(place), 100), expected, variance);
+    const BlockScores scores = block_scores(renders(cornell_at(place), integrator, 100), expected, variance);
     CHECK(scores.count > 150);
     CHECK(scores.largest < score_limit(scores.count, 1e-3 / static_cast<double>(places.size())));
   }
@@ -103,11 +105,13 @@ void check_brightness(const std::vector<Placement>& places) {
 }  // namespace
 
 TEST_CASE("the Cornell box is as bright when tiny or huge and far away") {
-  check_brightness({{1e-6, 1e7 * 1e-6 * cornell_size}, {1e6, 1e7 * 1e6 * cornell_size}});
+  for (const Integrator integrator : {Integrator::wavefront, Integrator::reference})
+    check_brightness({{1e-6, 1e7 * 1e-6 * cornell_size}, {1e6, 1e7 * 1e6 * cornell_size}}, integrator);
 }
 
 TEST_CASE("the Cornell box is as bright at every scale and place", "[long]") {
-  check_brightness(placements());
+  for (const Integrator integrator : {Integrator::wavefront, Integrator::reference})
+    check_brightness(placements(), integrator);
 }
 
 TEST_CASE("far parts that spoil the precision of near ones are told, with the loss that is measured") {
