@@ -27,13 +27,13 @@ struct PrimRef {
   static __m128 xyz() { return _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)); }
 };
 
-inline constexpr int max_bins = 16;
+inline constexpr int max_bins = 32;
 
 /// Maps primitives to bins of equal width over the range of their centroids, on each axis.
 class BinMap {
  public:
   BinMap(const Bounds& centroids2, std::uint32_t count)
-      : bins_(std::min(max_bins, 4 + static_cast<int>(count / 16))), origin_(centroids2.lower) {
+      : bins_(std::min(max_bins, 16 + static_cast<int>(count / 4))), origin_(centroids2.lower) {
     const Vec3f extent = to_vec3(_mm_sub_ps(centroids2.upper, centroids2.lower));
     const auto scale = [&](float e) {
       const float s = static_cast<float>(bins_) * 0.99999f / e;

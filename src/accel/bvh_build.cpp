@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "accel/binning.h"
+#include "accel/presplit.h"
 
 namespace castray {
 namespace {
@@ -51,14 +52,17 @@ void for_chunks(std::uint32_t begin, std::uint32_t end, const Body& body) {
 
 class Builder {
  public:
-  Builder(const MeshView& mesh, const BuildParameters& parameters)
-      : mesh_(mesh), parameters_(parameters), refs_{allocate(mesh.count), allocate(mesh.count)} {}
+  Builder(const MeshView& mesh, const BuildParameters& parameters) : mesh_(mesh), parameters_(parameters) {
+    if (parameters.split_share > 0) split_refs_ = presplit(mesh, parameters.split_share, parameters.threads);
+    count_ = split_refs_.empty() ? mesh.count : static_cast<std::uint32_t>(split_refs_.size());
+    for (auto& refs : refs_) refs = std::make_unique_for_overwrite<PrimRef[]>(count_);
+  }
 
   BinaryTree build() {
     BinaryTree tree;
-    tree.primitives.resize(mesh_.count);
+    tree.primitives.resize(count_);
     primitives_ = tree.primitives.data();
-#pragma omp parallel num_threads(parameters_.threads) if (mesh_.count > subtree_size)
+#pragma omp parallel num_threads(parameters_.threads) if (count_ > subtree_size)
 #pragma omp single
     {
       Subtree top;
@@ -76,22 +80,18 @@ class Builder {
   }
 
  private:
-  static std::unique_ptr<PrimRef[]> allocate(std::uint32_t count) {
-    return std::make_unique_for_overwrite<PrimRef[]>(count);
-  }
-
   Range make_refs() {
-    const std::uint32_t n = mesh_.count;
+    const std::uint32_t n = count_;
     std::vector<Bounds> chunk_box((n + chunk_size - 1) / chunk_size);
     for_chunks(0, n, [&](std::uint32_t c, std::uint32_t first, std::uint32_t last) {
       Bounds all;
       for (std::uint32_t i = first; i < last; ++i) {
-        const Bounds box = triangle_bounds(mesh_, i);
-        refs_[0][i] = PrimRef(box, i);
-        all.add(box);
+        refs_[0][i] = split_refs_.empty() ? PrimRef(triangle_bounds(mesh_, i), i) : split_refs_[i];
+        all.add(refs_[0][i].lower, refs_[0][i].upper);
       }
       chunk_box[c] = all;
     });
+    split_refs_ = {};
     Range range{0, n, 0, 0, {}};
     for (const Bounds& box : chunk_box) range.box.add(box);
     return range;
@@ -276,6 +276,8 @@ class Builder {
 
   MeshView mesh_;
   BuildParameters parameters_;
+  std::vector<PrimRef> split_refs_;
+  std::uint32_t count_;
   std::unique_ptr<PrimRef[]> refs_[2];
   std::uint32_t* primitives_ = nullptr;
 };

@@ -13,6 +13,7 @@ struct BuildParameters {
   std::uint32_t max_leaf = 8;  ///< most primitives in a leaf
   int leaf_block_log2 = 0;     ///< primitives are tested 2^this at a time: a leaf costs whole blocks
   float traversal_cost = 1;    ///< of visiting a node, over that of testing one block
+  double split_share = 0;      ///< cuts of wasteful triangles' boxes beforehand, as a share of the triangles
 };
 
 /// Binned surface area heuristic: Wald (2007), "On fast Construction of SAH-based Bounding Volume

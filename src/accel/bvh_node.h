@@ -21,7 +21,8 @@ struct alignas(64) BvhPair {
 };
 static_assert(sizeof(BvhPair) == 64);
 
-/// A binary tree over primitives 0 .. n-1: leaves hold runs of `primitives`, a permutation of them.
+/// A binary tree over primitives 0 .. n-1: leaves hold runs of `primitives`, a permutation of them (some
+/// several times, if the builder cut boxes).
 struct BinaryTree {
   BvhNode root{};  ///< a leaf if all fit in one; meaningless without primitives
   std::vector<BvhPair> pairs;

@@ -8,12 +8,15 @@
 
 namespace castray {
 
-WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality) {
+WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality quality) {
   const auto start = std::chrono::steady_clock::now();
   WideBvh bvh;
   if (mesh.count > 0) {
-    const BuildParameters parameters{
-        .threads = threads, .max_leaf = packet_size, .leaf_block_log2 = 3, .traversal_cost = 0.5f};
+    const BuildParameters parameters{.threads = threads,
+                                     .max_leaf = packet_size,
+                                     .leaf_block_log2 = 3,
+                                     .traversal_cost = 0.5f,
+                                     .split_share = quality == BuildQuality::best ? 2.0 : 0.0};
     const BinaryTree tree = build_binary_tree(mesh, parameters);
     WideTree wide = collapse(tree, mesh, threads);
     bvh.blocks_ = std::move(wide.blocks);

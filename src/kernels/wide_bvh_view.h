@@ -27,7 +27,8 @@ struct alignas(block_bytes) WideNode {
                       ///< farthest to the nearest, four bits each, the farthest lowest
 };
 
-/// Eight triangles, vertex by vertex and axis by axis, exactly as in the mesh. Unused lanes are a point.
+/// Eight triangles, vertex by vertex and axis by axis, exactly as in the mesh. Unused lanes repeat the
+/// first.
 struct alignas(block_bytes) TrianglePacket {
   float vertex[3][3][packet_size];
   uint32_t triangle[packet_size];
