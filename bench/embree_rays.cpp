@@ -3,19 +3,18 @@
 #include <embree3/rtcore.h>
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
+#include <atomic>
 #include <memory>
 #include <type_traits>
 
-#include "ray_files.h"
+#include "ray_bench.h"
 
 namespace castray {
 namespace {
 
-struct Options {
-  std::string mesh, rays, mode = "closest", quality = "medium", out;
+struct Options : RayBenchOptions {
+  std::string quality = "medium";
   bool robust = false;
-  int threads = 1, repeat = 5;
 };
 
 using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, decltype(&rtcReleaseDevice)>;
@@ -87,47 +86,35 @@ void trace(RTCScene scene, const RayArrays& rays, bool any, std::size_t first, s
   }
 }
 
+bool count_bytes(void* held, ssize_t bytes, bool) {
+  *static_cast<std::atomic<std::int64_t>*>(held) += bytes;
+  return true;
+}
+
 void measure(const Options& options) {
   const std::vector<float> soup = read_floats(options.mesh, 9);
-  const RayArrays rays = read_rays(options.rays);
   const double build1 = median_build(soup, options, 1), build2 = median_build(soup, options, 2);
   const Device device = make_device(options.threads);
+  std::atomic<std::int64_t> held = 0;
+  rtcSetDeviceMemoryMonitorFunction(device.get(), count_bytes, &held);
   const Scene scene = make_scene(device.get(), soup, options);
+  const std::int64_t mesh = held;
   build(scene.get());
-
-  std::vector<RayResult> results(rays.size());
-  constexpr std::int64_t run = 4096;
-  const auto count = static_cast<std::int64_t>(rays.size());
-  std::vector<double> seconds;
-  for (int i = 0; i < options.repeat; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-#pragma omp parallel for schedule(dynamic) num_threads(options.threads)
-    for (std::int64_t first = 0; first < count; first += run) {
-      trace(scene.get(), rays, options.mode == "any", static_cast<std::size_t>(first),
-            static_cast<std::size_t>(std::min(first + run, count)), results.data());
-    }
-    seconds.push_back(seconds_since(start));
-  }
-  if (!options.out.empty()) write_results(results, options.out);
-  fmt::print("{} triangles, {} rays, {} hit; Embree {}, quality {}, {} threads\n", soup.size() / 9, count,
-             count_hits(results), options.robust ? "robust" : "fast", options.quality, options.threads);
-  fmt::print("build {:.4f} s with 1 thread, {:.4f} s with 2\n", build1, build2);
-  fmt::print("{} {:.2f} million rays/s\n", options.mode, static_cast<double>(count) / median(seconds) / 1e6);
+  fmt::print("{} triangles, Embree {}, quality {}, {} threads\n", soup.size() / 9,
+             options.robust ? "robust" : "fast", options.quality, options.threads);
+  print_build(build1, build2, static_cast<std::size_t>(held - mesh), soup.size() / 9);
+  measure_rays(options, [&](const RayArrays& rays, bool any, std::size_t first, std::size_t last,
+                            RayResult* results) { trace(scene.get(), rays, any, first, last, results); });
 }
 
 void run(int argc, char** argv) {
   Options options;
   CLI::App app{"Embree's rays per second on the meshes and rays of files.", "castray-embree-rays"};
-  app.add_option("mesh", options.mesh, "raw float32, 9 a triangle")->required();
-  app.add_option("--rays", options.rays, "raw float32: ox oy oz dx dy dz t_max")->required();
+  add_ray_bench_options(app, options);
   app.add_flag("--robust", options.robust);
   app.add_option("--quality", options.quality)
       ->check(CLI::IsMember({"low", "medium", "high"}))
       ->capture_default_str();
-  app.add_option("--threads", options.threads)->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--mode", options.mode)->check(CLI::IsMember({"closest", "any"}))->capture_default_str();
-  app.add_option("--repeat", options.repeat)->check(CLI::Range(1, 1000))->capture_default_str();
-  app.add_option("--out", options.out, "t (float32) and triangle (uint32) of each ray");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -3,12 +3,11 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <ostream>
 
 #include "accel/wide_bvh.h"
 #include "integrate/wavefront.h"
-#include "ray_files.h"
+#include "ray_bench.h"
 #include "ray_sets.h"
 #include "tracers.h"
 
@@ -30,10 +29,8 @@ struct Soup {
   }
 };
 
-struct Options {
-  std::string mesh, rays, accel = "wide", isa = "auto", mode = "closest", out, build = "fast";
-  int threads = 1, repeat = 5;
-  std::string make, write;
+struct Options : RayBenchOptions {
+  std::string accel = "wide", isa = "auto", build = "fast", make, write;
   RaySetOptions set;
 };
 
@@ -49,11 +46,9 @@ void write_ray_set(const Options& options, const MeshView& mesh) {
 }
 
 void measure(const Options& options, const MeshView& mesh) {
-  const RayArrays rays = read_rays(options.rays);
-  if (rays.size() == 0) throw InputError({options.rays}, "holds no ray");
-  const KernelApi& kernel = choose_kernel(options.isa);
-  const std::unique_ptr<Tracer> tracer = make_tracer(
-      options.accel, mesh, kernel, options.build == "best" ? BuildQuality::best : BuildQuality::fast);
+  const std::unique_ptr<Tracer> tracer =
+      make_tracer(options.accel, mesh, choose_kernel(options.isa),
+                  options.build == "best" ? BuildQuality::best : BuildQuality::fast);
   BvhStats stats;
   double build_seconds[2];
   for (const int threads : {1, 2}) {
@@ -61,56 +56,33 @@ void measure(const Options& options, const MeshView& mesh) {
     for (int i = 0; i < options.repeat; ++i) seconds.push_back((stats = tracer->build(threads)).seconds);
     build_seconds[threads - 1] = median(seconds);
   }
-
-  const bool any = options.mode == "any";
-  std::vector<Hit<float>> hits(any ? 0 : rays.size());
-  std::vector<std::uint8_t> occluded(any ? rays.size() : 0);
-  constexpr std::int64_t run = 4096;
-  const auto count = static_cast<std::int64_t>(rays.size());
-  std::vector<double> seconds;
-  for (int i = 0; i < options.repeat; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-#pragma omp parallel for schedule(dynamic) num_threads(options.threads)
-    for (std::int64_t first = 0; first < count; first += run) {
-      const auto f = static_cast<std::size_t>(first),
-                 n = static_cast<std::size_t>(std::min(run, count - first));
-      if (any) {
-        tracer->occluded(rays, f, n, occluded.data() + f);
-      } else {
-        tracer->closest(rays, f, n, hits.data() + f);
-      }
-    }
-    seconds.push_back(seconds_since(start));
-  }
-  std::vector<RayResult> results(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    results[i] = any ? any_result(occluded[i] != 0) : RayResult{hits[i].t, hits[i].triangle};
-  }
-  if (!options.out.empty()) write_results(results, options.out);
-  fmt::print("{} triangles, {} rays, {} hit; {}, {} threads\n", mesh.count, count, count_hits(results),
-             tracer->name(), options.threads);
-  fmt::print("build {:.4f} s with 1 thread, {:.4f} s with 2; {:.1f} bytes a triangle, depth {}, {} nodes\n",
-             build_seconds[0], build_seconds[1], static_cast<double>(stats.bytes) / std::max(1u, mesh.count),
-             stats.depth, stats.nodes);
-  fmt::print("{} {:.2f} million rays/s\n", options.mode, static_cast<double>(count) / median(seconds) / 1e6);
+  fmt::print("{} triangles, {}, build {}, {} threads\n", mesh.count, tracer->name(), options.build,
+             options.threads);
+  print_build(build_seconds[0], build_seconds[1], stats.bytes, mesh.count);
+  measure_rays(options,
+               [&](const RayArrays& rays, bool any, std::size_t first, std::size_t last, RayResult* results) {
+                 const std::size_t count = last - first;
+                 if (any) {
+                   std::vector<std::uint8_t> occluded(count);
+                   tracer->occluded(rays, first, count, occluded.data());
+                   for (std::size_t i = 0; i < count; ++i) results[first + i] = any_result(occluded[i] != 0);
+                 } else {
+                   std::vector<Hit<float>> hits(count);
+                   tracer->closest(rays, first, count, hits.data());
+                   for (std::size_t i = 0; i < count; ++i) results[first + i] = {hits[i].t, hits[i].triangle};
+                 }
+               });
 }
 
 void run(int argc, char** argv) {
   Options options;
   CLI::App app{"Rays per second on the meshes and rays of files.", "castray-rays"};
-  app.add_option("mesh", options.mesh, "raw float32, 9 a triangle; castray-generate writes them")->required();
-  app.add_option("--rays", options.rays, "raw float32: ox oy oz dx dy dz t_max");
+  add_ray_bench_options(app, options);
   app.add_option("--accel", options.accel)
       ->check(CLI::IsMember({"wide", "bvh2", "list"}))
       ->capture_default_str();
   app.add_option("--isa", options.isa, "of wide: auto, scalar, sse4, avx2 or avx512")->capture_default_str();
   app.add_option("--build", options.build)->check(CLI::IsMember({"fast", "best"}))->capture_default_str();
-  app.add_option("--threads", options.threads)->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--mode", options.mode)->check(CLI::IsMember({"closest", "any"}))->capture_default_str();
-  app.add_option("--repeat", options.repeat, "the median is told")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option("--out", options.out, "t (float32) and triangle (uint32) of each ray");
   app.add_option("--make", options.make, "make rays instead")
       ->check(CLI::IsMember({"primary", "bounce", "shadow"}));
   app.add_option("--write", options.write, "where to")->needs("--make");
@@ -135,7 +107,6 @@ void run(int argc, char** argv) {
     if (options.write.empty()) throw InputError("--make needs --write FILE");
     write_ray_set(options, soup.view());
   } else {
-    if (options.rays.empty()) throw InputError("give --rays FILE, or --make and --write to make one");
     measure(options, soup.view());
   }
 }
