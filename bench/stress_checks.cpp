@@ -56,7 +56,7 @@ FloatMesh coplanar_stack(int copies) {
 
 std::vector<std::pair<std::string, FloatMesh>> standard_meshes(std::uint32_t triangles) {
   std::vector<std::pair<std::string, FloatMesh>> meshes;
-  for (const char* name : {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup"}) {
+  for (const char* name : {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"}) {
     meshes.emplace_back(name, place(make_shape(name, triangles, 1)));
   }
   meshes.emplace_back("sliver sphere", place(closed_sliver_sphere(triangles / 60, 30).shape));

@@ -224,6 +224,18 @@ Shape soup(std::uint32_t triangles, std::uint32_t seed) {
   return shape;
 }
 
+Shape sticks(std::uint32_t triangles, std::uint32_t seed) {
+  constexpr double width = 0.002;
+  Random random(seed);
+  Shape shape;
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const Vec3d from = random.in_cube() * (1 - width), to = random.in_cube() * (1 - width);
+    for (const Vec3d& p : {from, to, to + random.on_sphere() * width}) shape.positions.push_back(p);
+    shape.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return shape;
+}
+
 Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t seed) {
   if (triangles == 0) throw InputError("a shape needs at least 1 triangle");
   if (name == "icosphere") return icosphere(rounded_root(triangles / 20.0));
@@ -235,8 +247,9 @@ Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t s
   if (name == "terrain") return terrain(triangles, seed);
   if (name == "hair") return hair(triangles, seed);
   if (name == "soup") return soup(triangles, seed);
+  if (name == "sticks") return sticks(triangles, seed);
   throw InputError("no shape '" + std::string(name) + "'" +
-                   suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup"}));
+                   suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"}));
 }
 
 }  // namespace castray

@@ -34,7 +34,10 @@ Shape hair(std::uint32_t triangles, std::uint32_t seed);
 /// Small triangles of any direction anywhere in the cube.
 Shape soup(std::uint32_t triangles, std::uint32_t seed);
 
-/// The shape of that name (icosphere, blob, torus_knot, terrain, hair, soup) with about `triangles`
+/// Long thin triangles from anywhere to anywhere in the cube: their boxes fill it many times over.
+Shape sticks(std::uint32_t triangles, std::uint32_t seed);
+
+/// The shape of that name (icosphere, blob, torus_knot, terrain, hair, soup, sticks) with about `triangles`
 /// triangles. Throws InputError where there is none.
 Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t seed);
 

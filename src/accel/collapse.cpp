@@ -204,10 +204,12 @@ class Collapser {
     for (std::uint32_t i = 0; i < packets_of(leaf) * packet_size; ++i) {
       TrianglePacket& out = packets[i / packet_size];
       const std::uint32_t lane = i % packet_size;
-      const std::uint32_t triangle = tree_.primitives[leaf.first + (i < leaf.count ? i : 0)];
+      const bool used = i < leaf.count;
+      const std::uint32_t triangle = tree_.primitives[leaf.first + (used ? i : 0)];
       out.triangle[lane] = triangle;
       for (std::uint32_t v = 0; v < 3; ++v) {
-        const Vec3f& p = mesh_.positions[mesh_.triangles[triangle][v]];
+        const std::uint32_t corner = used ? v : v % 2;
+        const Vec3f& p = mesh_.positions[mesh_.triangles[triangle][corner]];
         for (int axis = 0; axis < 3; ++axis) out.vertex[v][axis][lane] = p[axis];
       }
     }

@@ -27,8 +27,8 @@ struct alignas(block_bytes) WideNode {
                       ///< farthest to the nearest, four bits each, the farthest lowest
 };
 
-/// Eight triangles, vertex by vertex and axis by axis, exactly as in the mesh. Unused lanes repeat the
-/// first.
+/// Eight triangles, vertex by vertex and axis by axis, exactly as in the mesh. Unused lanes go along the
+/// first triangle's first edge and back: two edge functions are each other's negative, and no ray hits.
 struct alignas(block_bytes) TrianglePacket {
   float vertex[3][3][packet_size];
   uint32_t triangle[packet_size];

@@ -45,7 +45,7 @@ TEST_CASE("generated shapes have the asked-for size") {
   CHECK(make_shape("terrain", 12345, 1).triangles.size() == 12345);
   CHECK(make_shape("hair", 5001, 1).triangles.size() == 5001);
   CHECK(make_shape("soup", 777, 1).triangles.size() == 777);
-  for (const char* name : {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup"})
+  for (const char* name : {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"})
     CHECK(greatest_coordinate(make_shape(name, 3000, 1)) <= 1);
 }
 
