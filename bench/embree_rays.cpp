@@ -45,21 +45,6 @@ Scene make_scene(RTCDevice device, const std::vector<float>& soup, const Options
   return scene;
 }
 
-/// Seconds of the build alone.
-double build(RTCScene scene) {
-  const auto start = std::chrono::steady_clock::now();
-  rtcCommitScene(scene);
-  return seconds_since(start);
-}
-
-double median_build(const std::vector<float>& soup, const Options& options, int threads) {
-  const Device device = make_device(threads);
-  std::vector<double> seconds;
-  for (int i = 0; i < options.repeat; ++i)
-    seconds.push_back(build(make_scene(device.get(), soup, options).get()));
-  return median(seconds);
-}
-
 RTCRay ray_at(const RayArrays& rays, std::size_t i) {
   const Ray<float> ray = rays[i];
   const auto &o = ray.origin, &d = ray.direction;
@@ -91,18 +76,29 @@ bool count_bytes(void* held, ssize_t bytes, bool) {
   return true;
 }
 
-void measure(const Options& options) {
-  const std::vector<float> soup = read_floats(options.mesh, 9);
-  const double build1 = median_build(soup, options, 1), build2 = median_build(soup, options, 2);
-  const Device device = make_device(options.threads);
+/// Of the build alone, the copy of the mesh left out.
+BuildCost build(int threads, const std::vector<float>& soup, const Options& options) {
+  const Device device = make_device(threads);
   std::atomic<std::int64_t> held = 0;
   rtcSetDeviceMemoryMonitorFunction(device.get(), count_bytes, &held);
   const Scene scene = make_scene(device.get(), soup, options);
-  const std::int64_t mesh = held;
-  build(scene.get());
+  const std::int64_t before = held;
+  const BuildCost cost = timed_build([&] {
+    rtcCommitScene(scene.get());
+    return static_cast<std::size_t>(held - before);
+  });
+  rtcSetDeviceMemoryMonitorFunction(device.get(), nullptr, nullptr);
+  return cost;
+}
+
+void measure(const Options& options) {
+  const std::vector<float> soup = read_floats(options.mesh, 9);
+  measure_build(options, soup.size() / 9, [&](int threads) { return build(threads, soup, options); });
+  const Device device = make_device(options.threads);
+  const Scene scene = make_scene(device.get(), soup, options);
+  rtcCommitScene(scene.get());
   fmt::print("{} triangles, Embree {}, quality {}, {} threads\n", soup.size() / 9,
              options.robust ? "robust" : "fast", options.quality, options.threads);
-  print_build(build1, build2, static_cast<std::size_t>(held - mesh), soup.size() / 9);
   measure_rays(options, [&](const RayArrays& rays, bool any, std::size_t first, std::size_t last,
                             RayResult* results) { trace(scene.get(), rays, any, first, last, results); });
 }

@@ -57,8 +57,25 @@ void measure_rays(const RayBenchOptions& options, const TraceRays& trace) {
   }
 }
 
-void print_build(double seconds1, double seconds2, std::size_t bytes, std::size_t triangles) {
-  fmt::print("build: {:.4f} s with 1 thread, {:.4f} s with 2; {:.1f} bytes a triangle\n", seconds1, seconds2,
+BuildCost timed_build(const std::function<std::size_t()>& build) {
+  const double cpu = cpu_seconds();
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t bytes = build();
+  return {cpu_seconds() - cpu, seconds_since(start), bytes};
+}
+
+void measure_build(const RayBenchOptions& options, std::size_t triangles,
+                   const std::function<BuildCost(int threads)>& build) {
+  std::vector<double> one, two;
+  std::size_t bytes = 0;
+  for (int i = 0; i < options.repeat; ++i) {
+    one.push_back(build(1).cpu_seconds);
+    const BuildCost cost = build(2);
+    two.push_back(cost.seconds);
+    bytes = cost.bytes;
+  }
+  fmt::print("build: {:.4f} s with 1 thread, {:.4f} s with 2; {:.1f} bytes a triangle\n", median(one),
+             *std::min_element(two.begin(), two.end()),
              static_cast<double>(bytes) / static_cast<double>(std::max<std::size_t>(1, triangles)));
 }
 

@@ -26,7 +26,17 @@ using TraceRays = std::function<void(const RayArrays& rays, bool any, std::size_
 /// thread, the median of the repetitions. Processor time, as other programs may run on the machine.
 void measure_rays(const RayBenchOptions& options, const TraceRays& trace);
 
-/// Prints what a build took and what it holds.
-void print_build(double seconds1, double seconds2, std::size_t bytes, std::size_t triangles);
+struct BuildCost {
+  double cpu_seconds, seconds;
+  std::size_t bytes;  ///< held afterwards
+};
+
+/// Runs `build`, which returns the bytes held.
+BuildCost timed_build(const std::function<std::size_t()>& build);
+
+/// Builds again and again, with one thread and with two; prints the median processor time with one, the least
+/// time with two (what others leave of the machine is not in it), and what is held.
+void measure_build(const RayBenchOptions& options, std::size_t triangles,
+                   const std::function<BuildCost(int threads)>& build);
 
 }  // namespace castray

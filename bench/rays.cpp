@@ -46,19 +46,15 @@ void write_ray_set(const Options& options, const MeshView& mesh) {
 }
 
 void measure(const Options& options, const MeshView& mesh) {
-  const std::unique_ptr<Tracer> tracer =
-      make_tracer(options.accel, mesh, choose_kernel(options.isa),
-                  options.build == "best" ? BuildQuality::best : BuildQuality::fast);
-  BvhStats stats;
-  double build_seconds[2];
-  for (const int threads : {1, 2}) {
-    std::vector<double> seconds;
-    for (int i = 0; i < options.repeat; ++i) seconds.push_back((stats = tracer->build(threads)).seconds);
-    build_seconds[threads - 1] = median(seconds);
-  }
+  const KernelApi& kernel = choose_kernel(options.isa);
+  const BuildQuality quality = options.build == "best" ? BuildQuality::best : BuildQuality::fast;
+  std::unique_ptr<Tracer> tracer;
+  measure_build(options, mesh.count, [&](int threads) {
+    tracer = make_tracer(options.accel, mesh, kernel, quality);
+    return timed_build([&] { return tracer->build(threads).bytes; });
+  });
   fmt::print("{} triangles, {}, build {}, {} threads\n", mesh.count, tracer->name(), options.build,
              options.threads);
-  print_build(build_seconds[0], build_seconds[1], stats.bytes, mesh.count);
   measure_rays(options,
                [&](const RayArrays& rays, bool any, std::size_t first, std::size_t last, RayResult* results) {
                  const std::size_t count = last - first;

@@ -84,8 +84,7 @@ int run(int argc, char** argv) {
   std::uint32_t triangles = 0, seed = 1;
   CLI::App app{"Writes a mesh made by rule.", "castray-generate"};
   app.add_option("shape", shape, "icosphere, blob, torus_knot, terrain, hair, soup or sticks")->required();
-  app.add_option("-n,--triangles", triangles, "how many, about (the last four: exactly)")
-      ->required();
+  app.add_option("-n,--triangles", triangles, "how many, about (the last four: exactly)")->required();
   app.add_option("--seed", seed, "another mesh of the kind")->capture_default_str();
   app.add_option(
          "-o", file,

@@ -248,8 +248,9 @@ Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t s
   if (name == "hair") return hair(triangles, seed);
   if (name == "soup") return soup(triangles, seed);
   if (name == "sticks") return sticks(triangles, seed);
-  throw InputError("no shape '" + std::string(name) + "'" +
-                   suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"}));
+  throw InputError(
+      "no shape '" + std::string(name) + "'" +
+      suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"}));
 }
 
 }  // namespace castray

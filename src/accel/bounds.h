@@ -2,6 +2,7 @@
 
 #include <emmintrin.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -40,6 +41,14 @@ inline Bounds triangle_bounds(const MeshView& mesh, std::uint32_t triangle) {
   Bounds box;
   for (const std::uint32_t v : mesh.triangles[triangle]) box.add(load_point(mesh.positions[v]));
   return box;
+}
+
+/// Half the surface of ever smaller boxes along a triangle, together: its area seen along each axis.
+inline float least_half_area(const MeshView& mesh, std::uint32_t triangle) {
+  const Index3& v = mesh.triangles[triangle];
+  const Vec3f n =
+      cross(mesh.positions[v[1]] - mesh.positions[v[0]], mesh.positions[v[2]] - mesh.positions[v[0]]);
+  return (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)) / 2;
 }
 
 }  // namespace castray

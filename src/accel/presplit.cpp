@@ -36,13 +36,8 @@ class Presplitter {
   /// How much a cut would save, on a scale of its own.
   float priority(std::uint32_t triangle) const {
     const Box box = box_of(triangle);
-    const Vec3f d = box.upper - box.lower;
-    const Index3& v = mesh_.triangles[triangle];
-    const Vec3f n =
-        cross(mesh_.positions[v[1]] - mesh_.positions[v[0]], mesh_.positions[v[2]] - mesh_.positions[v[0]]);
-    const float area = 2 * (d.x * d.y + d.y * d.z + d.z * d.x);
-    const float ideal = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);  // of ever smaller boxes
-    const float saved = std::ldexp(area - ideal, -best_plane(box).level);
+    const float area = half_area({load_point(box.lower), load_point(box.upper)});
+    const float saved = std::ldexp(area - least_half_area(mesh_, triangle), -best_plane(box).level);
     return saved > 0 && std::isfinite(saved) ? std::cbrt(saved) : 0;
   }
 

@@ -12,9 +12,8 @@ namespace castray {
 /// bit for bit.
 class WideBvh {
  public:
-  /// The hierarchy does not depend on `threads`. `best` cuts the boxes of wasteful triangles first: up to
-  /// three times the memory and five times the build; worth it only where long triangles lie across the axes.
-  /// `automatic` is `fast`.
+  /// The hierarchy does not depend on `threads`. `best` cuts the boxes of wasteful triangles first, whatever
+  /// it gains (see choose_build): three times the memory, five times the build. `automatic` is `fast`.
   static WideBvh build(const MeshView& mesh, int threads, BuildQuality quality = BuildQuality::fast);
 
   /// Valid as long as this lives.

@@ -1,6 +1,8 @@
 #include "integrate/plan.h"
 
+#include "accel/build_quality.h"
 #include "integrate/estimator.h"
+#include "integrate/row_loop.h"
 #include "kernels/api.h"
 #include "scene/needs.h"
 
@@ -18,6 +20,17 @@ bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
   if (needs.textures || needs.smooth_normals) return false;  // facets have no barycentrics
   return options.accel == AccelKind::list ||
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
+}
+
+/// The samples per pixel asked for do not count: with shared paths the last digits tell trees apart, and a
+/// film continued or merged is to be made with one tree.
+BuildQuality build_quality(const Scene& scene, const RenderOptions& options) {
+  constexpr double usual_rays_of_a_pixel = 16 * 4;
+  if (options.build == BuildQuality::fast) return BuildQuality::fast;
+  const Window window = window_of(scene, options);
+  const double pixels = static_cast<double>(window.full_width) * window.full_height;
+  const MeshView mesh = mesh_of(scene);
+  return choose_build(options.build, wasted_boxes(mesh), mesh.count, usual_rays_of_a_pixel * pixels);
 }
 
 std::string kernel_name(const Plan& plan) {
@@ -43,12 +56,13 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
   plan.mis = uses_mis(options.mis, needs.emitting_share);
   plan.suffixes = options.reuse.automatic ? 32 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
-  plan.build = options.build == BuildQuality::automatic ? BuildQuality::fast : options.build;
+  plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options);
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, const char* what) {
     if (!needed) plan.skipped.emplace_back(what);
   };
   skip(!plan.list, "tree");
+  skip(plan.list || plan.build == BuildQuality::best, "cut boxes");
   skip(detail || needs.textures, "textures");
   skip(detail || needs.smooth_normals, "smooth normals");
   skip(materials || needs.microfacet, "microfacet");

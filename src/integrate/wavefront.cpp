@@ -136,11 +136,12 @@ class Wavefront {
   std::vector<Workplace> workplaces_;
 };
 
-std::string accel_summary(const KernelSceneData& data, std::size_t triangles) {
+std::string accel_summary(const KernelSceneData& data, const Plan& plan, std::size_t triangles) {
   if (!data.bvh) return fmt::format("list: {} triangles as {} facets", triangles, data.facets.facets.size());
   const BvhStats& b = data.bvh->stats();
-  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s",
-                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds);
+  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s, build {}",
+                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds,
+                     plan.build == BuildQuality::best ? "best" : "fast");
 }
 
 }  // namespace
@@ -158,7 +159,7 @@ RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
   result.stats.isa = wavefront.kernel().name;
   result.stats.kernel = plan.kernel;
   result.stats.skipped = plan.skipped;
-  result.stats.accel_summary = accel_summary(wavefront.data(), scene.triangles.size());
+  result.stats.accel_summary = accel_summary(wavefront.data(), plan, scene.triangles.size());
   if (wavefront.data().bvh) result.stats.bvh_seconds = wavefront.data().bvh->stats().seconds;
   return result;
 }
