@@ -92,8 +92,8 @@ json item_of(const Comparison& c, const std::string& flags) {
                         : c.error.empty() ? "fail"
                                           : "error"},
             {"why", complaint(c)},
-            {"repeat", "castray compare " + files + flags},
-            {"accept", "castray accept " + files}};
+            {"repeat", "castray compare " + files + flags}};
+  if (std::filesystem::exists(c.image_file)) item["accept"] = "castray accept " + files;
   if (!c.error.empty()) return item;
   item["width"] = c.image.width;
   item["height"] = c.image.height;

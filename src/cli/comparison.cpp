@@ -63,8 +63,8 @@ void check_bound(Comparison& c, const std::string& name, double bound, bool grea
 void check_noise(Comparison& c) {
   const NoiseTest& test = *c.noise;
   constexpr const char* channels[] = {"red", "green", "blue"};
-  std::string said = fmt::format("p = {:.3g} after {} {}tests, allowed at least {:.3g}", test.p, test.tests,
-                                 test.paired ? "paired " : "", test.alpha);
+  std::string said = fmt::format("noise explains the difference with p = {:.3g} ({} {}tests), allowed at least {:.3g}", test.p,
+                                 test.tests, test.paired ? "paired " : "", test.alpha);
   if (test.differs())
     said += fmt::format("; most in {}, pixels {},{} to {},{}: {:.6g} against {:.6g}, {:.1f} standard errors",
                         channels[test.channel], test.x0, test.y0, test.x1 - 1, test.y1 - 1, test.mean,

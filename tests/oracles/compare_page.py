@@ -88,7 +88,7 @@ def check_values_and_zoom(page):
     scale = before["width"] / WIDTH
     page.locator("canvas").first.hover(position={"x": 30.5 * scale, "y": 7.5 * scale})
     text = page.locator(".values").first.inner_text()
-    assert "(30,7)" in text and "1.030" in text and "0.2500" in text and "-0.2500" in text, text
+    assert "(30,7)" in text and " 1.03 " in text and " 0.250\n" in text and " -0.250" in text, text
 
 
 def check_exposure(page):
