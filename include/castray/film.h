@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,8 +73,9 @@ class Film {
   struct Blocks {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   };
-  /// All that the window meets.
-  Blocks blocks() const;
+  /// All that a window meets.
+  static Blocks blocks_of(const Window& window);
+  Blocks blocks() const { return blocks_of(window_); }
   /// The mean radiance over some blocks in each replicate kept, by ascending replicate.
   std::vector<Vec3d> replicate_means(const Blocks& blocks) const;
 
@@ -112,6 +114,12 @@ class Film {
   std::vector<std::uint32_t> counts_;
   std::vector<Replicate> replicates_;  ///< ascending
 };
+
+/// The noise of the film's image, from its replicates; none if it keeps fewer than two. The pixels of a block
+/// share the variance of the block's mean, times its pixels, times one factor of at least 1 for the whole
+/// film: the most by which the variance of larger blocks exceeds, on average, what independent blocks would
+/// have.
+std::optional<Noise> noise_of(const Film& film);
 
 /// What a film says of itself, as PNG and EXR files hold it: scene, seed, spp and options.
 Metadata describe(const Film& film);

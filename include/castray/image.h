@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,26 +60,41 @@ Image displayed(const Image& radiance, const Display& display);
 /// What a file says besides its pixels: scene, spp, seed, seconds, version, ...
 using Metadata = std::map<std::string, std::string>;
 
+/// How far an image may be from its expectation.
+struct Noise {
+  Image variance;  ///< of each value, such that errors of different pixels can be taken for uncorrelated
+  double freedom =
+      std::numeric_limits<double>::infinity();  ///< of the variance of 8x8 pixels; infinite: exact
+};
+
 /// What a file holds. PPM and PNG hold values in [0,1] under a tone curve that the file does not tell, all
 /// other formats hold linear radiance.
 struct ImageFile {
   Image image;
-  bool encoded = false;  ///< `image` holds stored values in [0,1], not radiance
-  Metadata metadata;     ///< PNG, EXR and film
+  bool encoded = false;             ///< `image` holds stored values in [0,1], not radiance
+  Metadata metadata;                ///< PNG, EXR and film
+  std::optional<Noise> noise = {};  ///< EXR, film with replicates, and PFM with a variance_file
 };
 
 /// Reads .ppm (P3, P6), .png (8 and 16 bits), .pfm, .hdr, .exr (first part; half, float; scanlines, tiles) or
-/// .film; grey is widened to RGB, alpha is left out. Throws InputError that says what is wrong with the file.
+/// .film; grey is widened to RGB, alpha is left out. Noise is that of a film's replicates (`noise_of`); in
+/// EXR the channels variance.R, variance.G, variance.B with the attribute varianceFreedom (double; none:
+/// infinite); of NAME.pfm the file NAME.variance.pfm beside it, if there, taken for exact. Throws InputError
+/// that says what is wrong with the file.
 ImageFile read_image(const std::filesystem::path& file);
 
 /// Linear radiance: what `file` holds, decoded by `tone` where it is encoded.
 Image decoded(const ImageFile& file, const ToneCurve& tone);
 
 /// Writes `image` in the format of the suffix, atomically. `display` shapes .ppm and .png, of 8 bits, only;
-/// there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and .exr.
-/// Throws InputError.
+/// there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and .exr,
+/// `noise` in .exr. Throws InputError.
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display = {},
-                 const Metadata& metadata = {});
+                 const Metadata& metadata = {}, const std::optional<Noise>& noise = {});
+
+/// NAME.variance.pfm of NAME.pfm.
+std::filesystem::path variance_file(const std::filesystem::path& pfm);
+bool is_variance_file(const std::filesystem::path& file);
 
 /// The bytes of a PNG file.
 std::string encode_png(const Image& image, const Display& display = {}, const Metadata& metadata = {});

@@ -6,7 +6,7 @@
 
 namespace castray {
 
-/// Whether two films that keep replicates differ by more than their noise explains.
+/// Whether two films or images that tell their noise differ by more than it explains.
 struct NoiseTest {
   double alpha = 0;       ///< family-wise false-alarm rate: two renders of one scene fail at most this often
   std::size_t tests = 0;  ///< blocks of all sizes times channels
@@ -29,7 +29,14 @@ struct NoiseTest {
 /// are never counted. Throws InputError unless both films show one window and keep at least two replicates.
 NoiseTest test_noise(const Film& film, const Film& reference, double alpha);
 
-/// The probability that Student's t with `freedom` degrees of freedom lies beyond +-t.
+/// The same of two images with `noise`, taken for independent, whose errors add up over a block as those of
+/// uncorrelated pixels. The degrees of freedom of a block's variance are those of Satterthwaite (1946); where
+/// they are infinite, t is normal. Throws InputError where an image does not tell its noise, a variance is
+/// negative or not finite, or sizes differ.
+NoiseTest test_noise(const ImageFile& image, const ImageFile& reference, double alpha);
+
+/// The probability that Student's t with `freedom` degrees of freedom (normal where infinite) lies beyond
+/// +-t.
 double t_test_p_value(double t, double freedom);
 
 }  // namespace castray

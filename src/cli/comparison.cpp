@@ -41,12 +41,9 @@ void measure(Comparison& c) {
   if (!c.encoded) c.measures.push_back({"flip_hdr", flip_hdr(c.image, c.reference)});
   if (c.limits.pixels) c.percent_beyond = percent_beyond(c.image, c.reference, c.limits.pixels->bound);
   if (!c.limits.ztest) return;
-  for (const auto& file : {c.image_file, c.reference_file})
-    if (!is_film_format(file))
-      throw InputError({file.string()},
-                       "does not tell its noise; --ztest compares two .film files, of 'castray "
-                       "render --replicates R'");
-  c.noise = test_noise(read_film(c.image_file), read_film(c.reference_file), *c.limits.ztest);
+  const bool films = is_film_format(c.image_file) && is_film_format(c.reference_file);
+  c.noise = films ? test_noise(read_film(c.image_file), read_film(c.reference_file), *c.limits.ztest)
+                  : test_noise(read_image(c.image_file), read_image(c.reference_file), *c.limits.ztest);
 }
 
 void check_bound(Comparison& c, const std::string& name, double bound, bool greatest) {
@@ -63,8 +60,9 @@ void check_bound(Comparison& c, const std::string& name, double bound, bool grea
 void check_noise(Comparison& c) {
   const NoiseTest& test = *c.noise;
   constexpr const char* channels[] = {"red", "green", "blue"};
-  std::string said = fmt::format("noise explains the difference with p = {:.3g} ({} {}tests), allowed at least {:.3g}", test.p,
-                                 test.tests, test.paired ? "paired " : "", test.alpha);
+  std::string said =
+      fmt::format("noise explains the difference with p = {:.3g} ({} {}tests), allowed at least {:.3g}",
+                  test.p, test.tests, test.paired ? "paired " : "", test.alpha);
   if (test.differs())
     said += fmt::format("; most in {}, pixels {},{} to {},{}: {:.6g} against {:.6g}, {:.1f} standard errors",
                         channels[test.channel], test.x0, test.y0, test.x1 - 1, test.y1 - 1, test.mean,

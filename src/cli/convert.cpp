@@ -33,7 +33,7 @@ struct Convert {
     const Image radiance = decoded(file, display.tone);
     for (const auto& output : outputs) {
       warn_of_nonfinite(radiance, output);
-      write_image(output, radiance, display, file.metadata);
+      write_image(output, radiance, display, file.metadata, file.noise);
     }
     return 0;
   }

@@ -10,7 +10,7 @@ std::set<std::string> images_below(const std::filesystem::path& folder) {
   std::error_code error;
   for (std::filesystem::recursive_directory_iterator at(folder, error), end; !error && at != end;
        at.increment(error))
-    if (at->is_regular_file() && is_image_format(at->path()))
+    if (at->is_regular_file() && is_image_format(at->path()) && !is_variance_file(at->path()))
       names.insert(std::filesystem::relative(at->path(), folder).generic_string());
   if (error) throw InputError({folder.string()}, "cannot be read: " + error.message());
   if (names.empty()) throw InputError({folder.string()}, "holds no images");

@@ -52,7 +52,11 @@ void print_image_info(const std::filesystem::path& path) {
   fmt::print("size       {} x {}\n", file.image.width, file.image.height);
   fmt::print("values     {}\n", file.encoded ? "encoded, in 0 .. 1" : "linear radiance");
   print_range(file.image);
-  if (is_film_format(path)) print_film(path);
+  if (is_film_format(path))
+    print_film(path);
+  else if (file.noise)
+    fmt::print("noise      told by a variance of each value, of {} degrees of freedom\n",
+               file.noise->freedom);
   for (const auto& [key, value] : file.metadata)
     fmt::print("{:<10} {}\n", printable(key), printable(value, 4096));
 }

@@ -1,4 +1,5 @@
 #include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
@@ -49,6 +50,8 @@ class StreamOut : public Imf::OStream {
 };
 
 constexpr std::array<const char*, 3> rgb = {"R", "G", "B"};
+constexpr std::array<const char*, 3> variances = {"variance.R", "variance.G", "variance.B"};
+constexpr const char* freedom_name = "varianceFreedom";
 
 /// The names of the channels for red, green and blue: R, G, B, or Y for all three.
 std::array<const char*, 3> channels_of(const Imf::ChannelList& channels) {
@@ -60,14 +63,19 @@ std::array<const char*, 3> channels_of(const Imf::ChannelList& channels) {
   throw InputError("it has neither channels R, G, B nor Y, but " + (found.empty() ? "none" : found));
 }
 
-Imf::FrameBuffer frame_of(Image& image, const std::array<const char*, 3>& names, const Imath::Box2i& window) {
-  Imf::FrameBuffer frame;
+/// A frame buffer takes writable memory, though writing only reads it.
+void add_to(Imf::FrameBuffer& frame, const Image& image, const std::array<const char*, 3>& names,
+            const Imath::Box2i& window) {
   const std::size_t row = sizeof(Vec3f) * static_cast<std::size_t>(image.width);
   for (std::size_t c = 0; c < 3; ++c) {
     const void* first = reinterpret_cast<const float*>(image.pixels.data()) + c;
     frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(Vec3f), row));
   }
-  return frame;
+}
+
+bool has_variances(const Imf::ChannelList& channels) {
+  return std::all_of(variances.begin(), variances.end(),
+                     [&](const char* v) { return channels.findChannel(v); });
 }
 
 ImageFile read_from(const std::string& name, std::string_view bytes) {
@@ -82,7 +90,15 @@ ImageFile read_from(const std::string& name, std::string_view bytes) {
   const auto names = channels_of(header.channels());
   ImageFile result{Image(static_cast<int>(width), static_cast<int>(height)), false, {}};
   Image& image = result.image;
-  file.setFrameBuffer(frame_of(image, names, window));
+  Imf::FrameBuffer frame;
+  add_to(frame, image, names, window);
+  if (has_variances(header.channels())) {
+    result.noise = Noise{Image(image.width, image.height)};
+    add_to(frame, result.noise->variance, variances, window);
+    if (const auto* freedom = header.findTypedAttribute<Imf::DoubleAttribute>(freedom_name))
+      result.noise->freedom = freedom->value();
+  }
+  file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
   if (names[0] == names[1])
     for (Vec3f& v : image.pixels) v = Vec3f(v.z);
@@ -102,14 +118,23 @@ ImageFile read_exr(const std::string& name, std::string_view bytes) {
   }
 }
 
-void write_exr(std::ostream& out, const Image& image, const Metadata& metadata) {
+void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
+               const std::optional<Noise>& noise) {
   Imf::Header header(image.width, image.height);
-  for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  Imf::FrameBuffer frame;
+  const auto add = [&](const Image& values, const std::array<const char*, 3>& names) {
+    for (const char* name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    add_to(frame, values, names, header.dataWindow());
+  };
+  add(image, rgb);
+  if (noise) {
+    add(noise->variance, variances);
+    header.insert(freedom_name, Imf::DoubleAttribute(noise->freedom));
+  }
   for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
   StreamOut stream(out);
   Imf::OutputFile file(stream, header, 0);
-  Image copy = image;  // a frame buffer takes writable memory
-  file.setFrameBuffer(frame_of(copy, rgb, header.dataWindow()));
+  file.setFrameBuffer(frame);
   file.writePixels(image.height);
 }
 

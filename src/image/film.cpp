@@ -98,9 +98,9 @@ Image Film::image() const {
   return image;
 }
 
-Film::Blocks Film::blocks() const {
+Film::Blocks Film::blocks_of(const Window& window) {
   const auto last = [](int end) { return (end - 1) / noise_block + 1; };
-  return {window_.x0 / noise_block, window_.y0 / noise_block, last(window_.x1), last(window_.y1)};
+  return {window.x0 / noise_block, window.y0 / noise_block, last(window.x1), last(window.y1)};
 }
 
 void Film::keep_replicates() {

@@ -154,7 +154,7 @@ void write_film(const std::filesystem::path& file, const Film& film, const Displ
   if (is_film_format(file))
     write_file(file, FilmFile::bytes_of(film));
   else
-    write_image(file, film.image(), display, metadata);
+    write_image(file, film.image(), display, metadata, noise_of(film));
 }
 
 }  // namespace castray

@@ -20,7 +20,8 @@ Film parse_film(const std::string& name, std::string_view bytes);
 
 void write_pfm(std::ostream& out, const Image& image);
 void write_hdr(std::ostream& out, const Image& image);
-void write_exr(std::ostream& out, const Image& image, const Metadata& metadata);
+void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
+               const std::optional<Noise>& noise);
 
 /// 8-bit RGB, top row first.
 struct Image8 {

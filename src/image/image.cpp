@@ -24,7 +24,7 @@ Image8 quantised(const Image& image, const Display& display) {
 
 using Read = ImageFile (*)(const std::string& name, std::string_view bytes);
 using Write = void (*)(std::ostream& out, const Image& image, const Display& display,
-                       const Metadata& metadata);
+                       const Metadata& metadata, const std::optional<Noise>& noise);
 
 struct Format {
   const char* suffix;
@@ -35,26 +35,30 @@ struct Format {
 
 ImageFile read_film_image(const std::string& name, std::string_view bytes) {
   const Film film = parse_film(name, bytes);
-  return {film.image(), false, describe(film)};
+  return {film.image(), false, describe(film), noise_of(film)};
 }
+
+using OptionalNoise = const std::optional<Noise>&;
 
 constexpr Format formats[] = {
     {".ppm", true, read_ppm,
-     [](std::ostream& out, const Image& image, const Display& display, const Metadata&) {
+     [](std::ostream& out, const Image& image, const Display& display, const Metadata&, OptionalNoise) {
        write_ppm(out, quantised(image, display));
      }},
     {".png", true, read_png,
-     [](std::ostream& out, const Image& image, const Display& display, const Metadata& metadata) {
-       write_png(out, quantised(image, display), metadata);
-     }},
+     [](std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
+        OptionalNoise) { write_png(out, quantised(image, display), metadata); }},
     {".pfm", false, read_pfm,
-     [](std::ostream& out, const Image& image, const Display&, const Metadata&) { write_pfm(out, image); }},
-    {".hdr", false, read_hdr,
-     [](std::ostream& out, const Image& image, const Display&, const Metadata&) { write_hdr(out, image); }},
-    {".exr", false, read_exr,
-     [](std::ostream& out, const Image& image, const Display&, const Metadata& metadata) {
-       write_exr(out, image, metadata);
+     [](std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
+       write_pfm(out, image);
      }},
+    {".hdr", false, read_hdr,
+     [](std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
+       write_hdr(out, image);
+     }},
+    {".exr", false, read_exr,
+     [](std::ostream& out, const Image& image, const Display&, const Metadata& metadata,
+        OptionalNoise noise) { write_exr(out, image, metadata, noise); }},
     {".film", false, read_film_image, nullptr},
 };
 
@@ -96,15 +100,18 @@ void check_image_size(const std::string& name, double width, double height, std:
 ImageFile read_image(const std::filesystem::path& file) {
   const Format& format = format_of(file);
   const std::string bytes = read_file(file);
-  return format.read(file.string(), bytes);
+  ImageFile result = format.read(file.string(), bytes);
+  if (const auto beside = variance_file(file); format.read == read_pfm && std::filesystem::exists(beside))
+    result.noise = Noise{read_pfm(beside.string(), read_file(beside)).image};
+  return result;
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
-                 const Metadata& metadata) {
+                 const Metadata& metadata, const std::optional<Noise>& noise) {
   const Format& format = format_of(file);
   if (!format.write)
     throw InputError({file.string()}, "a film holds samples, which an image has not; choose another format");
-  write_file(file, [&](std::ostream& out) { format.write(out, image, display, metadata); });
+  write_file(file, [&](std::ostream& out) { format.write(out, image, display, metadata, noise); });
 }
 
 std::string encode_png(const Image& image, const Display& display, const Metadata& metadata) {
@@ -116,6 +123,14 @@ std::string encode_png(const Image& image, const Display& display, const Metadat
 void check_output_image(const std::filesystem::path& file) {
   check_writable(file);
   format_of(file);
+}
+
+std::filesystem::path variance_file(const std::filesystem::path& pfm) {
+  return std::filesystem::path(pfm).replace_extension(".variance.pfm");
+}
+
+bool is_variance_file(const std::filesystem::path& file) {
+  return file.filename().string().ends_with(".variance.pfm");
 }
 
 bool is_image_format(const std::filesystem::path& file) { return find_format(file); }

@@ -1,11 +1,15 @@
 #include "castray/noise_test.h"
 
+#include <fmt/core.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 
 #include "castray/error.h"
+#include "image/blocks.h"
 
 namespace castray {
 
@@ -42,103 +46,64 @@ double incomplete_beta(double a, double b, double x) {
   return 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
 
-/// Mean of some numbers, and the squared standard error of that mean.
-struct Estimate {
-  double mean = 0, variance = 0, freedom = 1;
-};
-
-Estimate estimate(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  Estimate e;
-  for (const double v : values) e.mean += v / n;
-  for (const double v : values) e.variance += (v - e.mean) * (v - e.mean) / ((n - 1) * n);
-  e.freedom = n - 1;
-  return e;
-}
-
-std::vector<double> channel_of(const std::vector<Vec3d>& means, int channel) {
-  std::vector<double> values;
-  for (const Vec3d& mean : means) values.push_back(mean[channel]);
-  return values;
-}
-
 /// One block and channel.
 struct BlockTest {
   double mean = 0, mean_reference = 0, t = 0, p = 1;
 };
 
-BlockTest test_block(const std::vector<double>& values, const std::vector<double>& reference, bool paired) {
-  const Estimate a = estimate(values), b = estimate(reference);
+bool is_rounding(double a, double b) {
+  return std::abs(a - b) <= 0x1p-17 * std::max(std::abs(a), std::abs(b));
+}
+
+BlockTest test_difference(const Estimate& a, const Estimate& b, double variance, double freedom) {
   BlockTest test{a.mean, b.mean, 0, 1};
-  const double difference = a.mean - b.mean;
-  if (std::abs(difference) <= 0x1p-17 * std::max(std::abs(a.mean), std::abs(b.mean))) return test;
-  double variance = a.variance + b.variance;
-  double freedom =
-      variance * variance / (a.variance * a.variance / a.freedom + b.variance * b.variance / b.freedom);
-  if (paired) {
-    std::vector<double> differences(values.size());
-    std::transform(values.begin(), values.end(), reference.begin(), differences.begin(), std::minus<>());
-    variance = estimate(differences).variance;
-    freedom = a.freedom;
-  }
-  test.t = difference / std::sqrt(variance);  // infinite where nothing is noisy
-  test.p = t_test_p_value(test.t, std::isfinite(freedom) ? freedom : 1);
+  if (is_rounding(a.mean, b.mean)) return test;
+  test.t = (a.mean - b.mean) / std::sqrt(variance);  // infinite where nothing is noisy
+  test.p = t_test_p_value(test.t, freedom);
   return test;
 }
 
-/// The blocks of `size` x `size` noise blocks that cover `all`.
-std::vector<Film::Blocks> groups_of(const Film::Blocks& all, int size) {
-  std::vector<Film::Blocks> groups;
-  for (int y = all.y0 / size * size; y < all.y1; y += size)
-    for (int x = all.x0 / size * size; x < all.x1; x += size)
-      groups.push_back(
-          {std::max(x, all.x0), std::max(y, all.y0), std::min(x + size, all.x1), std::min(y + size, all.y1)});
-  return groups;
+/// The two are independent.
+BlockTest test_welch(const Estimate& a, const Estimate& b) {
+  const double variance = a.variance + b.variance;
+  return test_difference(
+      a, b, variance,
+      variance * variance / (a.variance * a.variance / a.freedom + b.variance * b.variance / b.freedom));
 }
 
-void require_replicates(const Film& film, const char* which) {
-  if (film.replicate_means({}).size() < 2)
-    throw InputError(
-        std::string("the ") + which +
-        " does not tell its noise; it must be a .film of 'castray render --replicates R' with R >= 2");
+/// The values of one replicate in both share most of their noise.
+BlockTest test_paired(const std::vector<double>& values, const std::vector<double>& reference) {
+  std::vector<double> differences(values.size());
+  std::transform(values.begin(), values.end(), reference.begin(), differences.begin(), std::minus<>());
+  const Estimate difference = estimate(differences);
+  return test_difference(estimate(values), estimate(reference), difference.variance, difference.freedom);
 }
 
-}  // namespace
+/// The three channels of some blocks.
+using TestBlocks = std::function<std::array<BlockTest, 3>(const Film::Blocks&)>;
 
-double t_test_p_value(double t, double freedom) {
-  if (!std::isfinite(t)) return 0;
-  return incomplete_beta(freedom / 2, 0.5, freedom / (freedom + t * t));
-}
-
-NoiseTest test_noise(const Film& film, const Film& reference, double alpha) {
-  require_replicates(film, "image");
-  require_replicates(reference, "reference");
-  const Window& window = film.window();
-  if (window != reference.window()) throw InputError("the films show different windows");
-  const Film::Blocks all = film.blocks();
-  int sizes = 1;
-  while (groups_of(all, 1 << (sizes - 1)).size() > 1) ++sizes;
+/// Tests the blocks of all sizes.
+NoiseTest test_all(const Window& window, double alpha, const TestBlocks& test_blocks) {
+  const Film::Blocks all = Film::blocks_of(window);
+  const int sizes = count_sizes(all);
   NoiseTest result;
   result.alpha = alpha;
-  result.paired = film.samples == reference.samples &&
-                  describe(film)["castray:seed"] == describe(reference)["castray:seed"];
   double smallest = std::numeric_limits<double>::infinity();
   for (int size = 0; size < sizes; ++size) {
     const std::vector<Film::Blocks> groups = groups_of(all, 1 << size);
     const double share = 3 * static_cast<double>(groups.size()) * sizes;
+    result.tests += 3 * groups.size();
     for (const Film::Blocks& group : groups) {
-      const auto means = film.replicate_means(group), reference_means = reference.replicate_means(group);
-      for (int c = 0; c < 3; ++c) {
-        ++result.tests;
-        const BlockTest test =
-            test_block(channel_of(means, c), channel_of(reference_means, c), result.paired);
+      const std::array<BlockTest, 3> tests = test_blocks(group);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const BlockTest& test = tests[c];
         if (test.p * share >= smallest) continue;
         smallest = test.p * share;
         result.x0 = std::max(group.x0 * noise_block, window.x0);
         result.y0 = std::max(group.y0 * noise_block, window.y0);
         result.x1 = std::min(group.x1 * noise_block, window.x1);
         result.y1 = std::min(group.y1 * noise_block, window.y1);
-        result.channel = c;
+        result.channel = static_cast<int>(c);
         result.t = test.t;
         result.mean = test.mean;
         result.mean_reference = test.mean_reference;
@@ -147,6 +112,117 @@ NoiseTest test_noise(const Film& film, const Film& reference, double alpha) {
   }
   result.p = std::min(1.0, smallest);
   return result;
+}
+
+/// Sums over the pixels of each noise block of an image, and from them estimates for groups of blocks.
+class BlockSums {
+ public:
+  BlockSums(const Image& image, const Noise& noise)
+      : columns_(Film::blocks_of({image.width, image.height, 0, 0, image.width, image.height}).x1),
+        freedom_(noise.freedom) {
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        blocks_.resize(std::max(blocks_.size(), index(x / noise_block, y / noise_block) + 1));
+        Sums& sums = blocks_[index(x / noise_block, y / noise_block)];
+        sums.value += Vec3d(image.at(x, y));
+        sums.variance += Vec3d(noise.variance.at(x, y));
+        ++sums.pixels;
+      }
+  }
+
+  Estimate estimate(const Film::Blocks& group, int channel) const {
+    double value = 0, variance = 0, squares = 0, pixels = 0;
+    for (int y = group.y0; y < group.y1; ++y)
+      for (int x = group.x0; x < group.x1; ++x) {
+        const Sums& sums = blocks_[index(x, y)];
+        value += sums.value[channel];
+        variance += sums.variance[channel];
+        squares += sums.variance[channel] * sums.variance[channel];
+        pixels += sums.pixels;
+      }
+    return {value / pixels, variance / (pixels * pixels), freedom_ * variance * variance / squares};
+  }
+
+ private:
+  struct Sums {
+    Vec3d value, variance;
+    double pixels = 0;
+  };
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+  }
+
+  int columns_;
+  double freedom_;
+  std::vector<Sums> blocks_;
+};
+
+void require_replicates(const Film& film, const char* which) {
+  if (film.replicate_means({}).size() < 2)
+    throw InputError(std::string("the ") + which +
+                     " does not tell its noise; render it with --replicates R, R >= 2");
+}
+
+void require_noise(const ImageFile& file, const char* which) {
+  if (!file.noise)
+    throw InputError(
+        std::string("the ") + which +
+        " does not tell its noise; it must be a .film or .exr of 'castray render --replicates R', "
+        "R >= 2, or have variances");
+  const Image& variance = file.noise->variance;
+  if (variance.width != file.image.width || variance.height != file.image.height)
+    throw InputError(std::string("the variance of the ") + which + " has another size than the image");
+  for (int y = 0; y < variance.height; ++y)
+    for (int x = 0; x < variance.width; ++x) {
+      const Vec3f& v = variance.at(x, y);
+      if (!is_finite(v) || std::min({v.x, v.y, v.z}) < 0)
+        throw InputError(fmt::format("pixel ({},{}) of the {} has a variance that is negative or not finite",
+                                     x, y, which));
+    }
+  if (!(file.noise->freedom > 0))
+    throw InputError(std::string("the ") + which + " has variances of no degree of freedom");
+}
+
+}  // namespace
+
+double t_test_p_value(double t, double freedom) {
+  constexpr double as_good_as_normal = 1e8;
+  if (!std::isfinite(t)) return 0;
+  if (freedom > as_good_as_normal) return std::erfc(std::abs(t) / std::numbers::sqrt2);
+  return incomplete_beta(freedom / 2, 0.5, freedom / (freedom + t * t));
+}
+
+NoiseTest test_noise(const Film& film, const Film& reference, double alpha) {
+  require_replicates(film, "image");
+  require_replicates(reference, "reference");
+  if (film.window() != reference.window()) throw InputError("the films show different windows");
+  const bool paired = film.samples == reference.samples &&
+                      describe(film)["castray:seed"] == describe(reference)["castray:seed"];
+  NoiseTest result = test_all(film.window(), alpha, [&](const Film::Blocks& group) {
+    const auto means = film.replicate_means(group), reference_means = reference.replicate_means(group);
+    std::array<BlockTest, 3> tests;
+    for (int c = 0; c < 3; ++c) {
+      const std::vector<double> a = channel_of(means, c), b = channel_of(reference_means, c);
+      tests[static_cast<std::size_t>(c)] = paired ? test_paired(a, b) : test_welch(estimate(a), estimate(b));
+    }
+    return tests;
+  });
+  result.paired = paired;
+  return result;
+}
+
+NoiseTest test_noise(const ImageFile& image, const ImageFile& reference, double alpha) {
+  require_noise(image, "image");
+  require_noise(reference, "reference");
+  const int width = image.image.width, height = image.image.height;
+  if (width != reference.image.width || height != reference.image.height)
+    throw InputError("the images are of different sizes");
+  const BlockSums a(image.image, *image.noise), b(reference.image, *reference.noise);
+  return test_all({width, height, 0, 0, width, height}, alpha, [&](const Film::Blocks& group) {
+    return std::array{test_welch(a.estimate(group, 0), b.estimate(group, 0)),
+                      test_welch(a.estimate(group, 1), b.estimate(group, 1)),
+                      test_welch(a.estimate(group, 2), b.estimate(group, 2))};
+  });
 }
 
 }  // namespace castray
