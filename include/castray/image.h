@@ -52,6 +52,7 @@ std::string to_string(const ToneCurve& tone);
 struct Display {
   ToneCurve tone;
   double exposure = 0;  ///< stops
+  bool bits16 = false;  ///< files hold 16 bits a value: .ppm and .png instead of 8, .exr (half) instead of 32
 };
 
 /// Radiance as stored values in [0,1].
@@ -86,9 +87,9 @@ ImageFile read_image(const std::filesystem::path& file);
 /// Linear radiance: what `file` holds, decoded by `tone` where it is encoded.
 Image decoded(const ImageFile& file, const ToneCurve& tone);
 
-/// Writes `image` in the format of the suffix, atomically. `display` shapes .ppm and .png, of 8 bits, only;
-/// there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and .exr,
-/// `noise` in .exr. Throws InputError.
+/// Writes `image` in the format of the suffix, atomically. `display` shapes .ppm and .png only, but for
+/// bits16; there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and
+/// .exr, `noise` in .exr. Throws InputError.
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display = {},
                  const Metadata& metadata = {}, const std::optional<Noise>& noise = {});
 
@@ -106,8 +107,8 @@ void check_output_image(const std::filesystem::path& file);
 /// Whether the suffix is that of a format that can be read.
 bool is_image_format(const std::filesystem::path& file);
 
-/// Whether the suffix is that of a format of 8 bits, which `Display` shapes.
-bool is_8bit_format(const std::filesystem::path& file);
+/// Whether the suffix is that of a format of encoded values, .ppm or .png.
+bool is_encoded_format(const std::filesystem::path& file);
 
 /// Whether the suffix is .film.
 bool is_film_format(const std::filesystem::path& file);

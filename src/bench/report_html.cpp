@@ -8,7 +8,7 @@
 #include "bench/crop.h"
 #include "bench/plot.h"
 #include "bench/report.h"
-#include "image/formats.h"
+#include "core/base64.h"
 
 namespace castray {
 
@@ -27,30 +27,8 @@ th:first-child,td:first-child{text-align:left}svg{max-width:100%;height:auto}
 .bar{display:inline-block;height:.7em;background:var(--bar);vertical-align:middle}
 )";
 
-std::string base64(const std::string& bytes) {
-  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 /// A PNG with sRGB's curve, as an address that holds it.
-std::string data_address(const Image& image) {
-  const Image shown = displayed(image, {});
-  Image8 pixels{image.width, image.height, {}};
-  for (const Vec3f& pixel : shown.pixels)
-    for (int c = 0; c < 3; ++c)
-      pixels.bytes.push_back(static_cast<unsigned char>(std::lround(std::clamp(pixel[c], 0.f, 1.f) * 255)));
-  std::ostringstream png;
-  write_png(png, pixels, {});
-  return "data:image/png;base64," + base64(png.str());
-}
+std::string data_address(const Image& image) { return "data:image/png;base64," + base64(encode_png(image)); }
 
 std::vector<PlotSeries> series_of(const BenchScene& scene) {
   std::vector<PlotSeries> all;

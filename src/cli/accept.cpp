@@ -15,12 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts `image` in the place of `reference`, byte for byte, once it is known to be one that can be read.
-void accept_file(const fs::path& image, const fs::path& reference) {
-  if (image.extension() != reference.extension())
-    throw InputError({reference.string()},
-                     "has another suffix than " + image.string() + "; convert the image first");
-  read_image(image);
+/// Puts `image` in the place of `reference`, byte for byte.
+void replace_file(const fs::path& image, const fs::path& reference) {
   const std::string bytes = read_file(image);
   std::error_code ignored;
   if (fs::exists(reference, ignored) && read_file(reference) == bytes) {
@@ -32,12 +28,24 @@ void accept_file(const fs::path& image, const fs::path& reference) {
   fmt::print("{}  {}\n", is_new ? "new     " : "replaced", reference.string());
 }
 
+/// Replaces an image, with the variances beside it, once it is known to be one that can be read.
+void accept_file(const fs::path& image, const fs::path& reference) {
+  if (image.extension() != reference.extension())
+    throw InputError({reference.string()},
+                     "has another suffix than " + image.string() + "; convert the image first");
+  read_image(image);
+  replace_file(image, reference);
+  if (image.extension() == ".pfm" && fs::exists(variance_file(image)))
+    replace_file(variance_file(image), variance_file(reference));
+}
+
 int accept(const fs::path& image, const fs::path& reference) {
   if (!fs::is_directory(image)) {
     accept_file(image, reference);
     return 0;
   }
-  if (!fs::is_directory(reference)) throw InputError({reference.string()}, "is not a folder, but IMAGE is");
+  if (fs::exists(reference) && !fs::is_directory(reference))
+    throw InputError({reference.string()}, "is not a folder, but IMAGE is");
   for (const std::string& name : images_below(image)) {
     fs::create_directories((reference / name).parent_path());
     accept_file(image / name, reference / name);
@@ -53,7 +61,9 @@ Run add_accept(CLI::App& app) {
   };
   auto files = std::make_shared<Files>();
   app.add_option("IMAGE", files->image, "an image or film, or a folder of them")->required();
-  app.add_option("REFERENCE", files->reference, "the file or folder that it shall replace")->required();
+  app.add_option("REFERENCE", files->reference,
+                 "the file or folder that it shall replace; made where there is none")
+      ->required();
   return [files] { return accept(files->image, files->reference); };
 }
 

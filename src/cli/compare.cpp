@@ -11,6 +11,8 @@
 #include "cli/image_folder.h"
 #include "cli/shell_word.h"
 #include "core/files.h"
+#include "core/nearest.h"
+#include "core/text.h"
 
 namespace castray::cli {
 
@@ -75,6 +77,11 @@ struct Compare {
   std::vector<Comparison> compare_folders(const LimitsFile& limits) const {
     std::set<std::string> names = images_below(reference);
     names.merge(images_below(image));
+    for (const auto& [name, own] : limits.by_name)
+      if (!names.contains(name))
+        throw InputError({limits_file.string()}, "has limits of '" + printable(name) +
+                                                     "', which is in neither folder" +
+                                                     suggestion(name, {names.begin(), names.end()}));
     std::vector<Comparison> comparisons;
     for (const std::string& name : names) {
       comparisons.push_back(compare_files(name, image / name, reference / name, limits.of(name), flags));

@@ -19,10 +19,10 @@ struct Convert {
   int run() const {
     const Display display = flags.display();
     for (const auto& output : outputs) check_output_image(output);
-    const bool any_8bit = std::any_of(outputs.begin(), outputs.end(), is_8bit_format);
-    if (flags.exposure != 0 && !any_8bit)
+    const bool any_encoded = std::any_of(outputs.begin(), outputs.end(), is_encoded_format);
+    if (flags.exposure != 0 && !any_encoded)
       throw InputError("--exposure shapes .png and .ppm files only, and no output is one; leave it out");
-    if (!flags.tone.empty() && !any_8bit && !is_8bit_format(input))
+    if (!flags.tone.empty() && !any_encoded && !is_encoded_format(input))
       throw InputError("--tone shapes .png and .ppm files only, and there is none; leave it out");
     if (is_film_format(input) && std::any_of(outputs.begin(), outputs.end(), is_film_format)) {
       const Film film = read_film(input);
@@ -46,6 +46,7 @@ Run add_convert(CLI::App& app) {
   app.add_option("IMAGE", convert->input, "a .ppm, .png, .pfm, .hdr, .exr or .film file")->required();
   add_outputs(app, convert->outputs);
   convert->flags.add_to(app);
+  convert->flags.add_bits_to(app);
   return [convert] { return convert->run(); };
 }
 

@@ -6,18 +6,27 @@
 #include <cmath>
 
 #include "castray/error.h"
+#include "cli/values.h"
 
 namespace castray::cli {
 
 void DisplayFlags::add_to(CLI::App& app) {
-  app.add_option("--exposure", exposure, "multiply 8-bit pictures by 2^STOPS")->type_name("STOPS");
-  app.add_option("--tone", tone, "curve of 8-bit pictures: srgb (default), linear, or gamma:G for value^G")
+  app.add_option("--exposure", exposure, "multiply by 2^STOPS before encoding")->type_name("STOPS");
+  app.add_option("--tone", tone, "curve of encoded pictures: srgb (default), linear, or gamma:G for value^G")
       ->type_name("CURVE");
+}
+
+void DisplayFlags::add_bits_to(CLI::App& app) {
+  app.add_option("--bits", bits, bits_help)->type_name("auto|16");
+}
+
+bool parse_bits(const std::string& flag, const std::string& text) {
+  return parse_choice<bool>(flag, text, {{"auto", false}, {"16", true}});
 }
 
 Display DisplayFlags::display() const {
   if (!(std::abs(exposure) <= 100)) throw InputError("--exposure: give stops between -100 and 100");
-  return {tone.empty() ? ToneCurve{} : parse_tone_curve(tone), exposure};
+  return {tone.empty() ? ToneCurve{} : parse_tone_curve(tone), exposure, parse_bits("bits", bits)};
 }
 
 void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& files) {
@@ -29,7 +38,7 @@ void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& files) {
 
 void warn_of_nonfinite(const Image& image, const std::filesystem::path& file) {
   const std::size_t count = count_nonfinite(image);
-  if (count > 0 && is_8bit_format(file))
+  if (count > 0 && is_encoded_format(file))
     fmt::print(stderr, "castray: warning: {}: {} pixels are not finite; NaN is shown black\n", file.string(),
                count);
 }

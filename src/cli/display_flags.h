@@ -12,16 +12,24 @@ class App;
 
 namespace castray::cli {
 
-/// --exposure and --tone, as the user gave them.
+/// --exposure, --tone and --bits, as the user gave them.
 struct DisplayFlags {
   double exposure = 0;
   std::string tone;  ///< empty: not given
 
+  std::string bits = "auto";
+
   void add_to(CLI::App& app);
+  void add_bits_to(CLI::App& app);  ///< for commands that write images
   bool given() const { return exposure != 0 || !tone.empty(); }
   /// Throws InputError where a value cannot be.
   Display display() const;
 };
+
+/// The value of --bits: whether files hold 16 bits a value.
+bool parse_bits(const std::string& flag, const std::string& text);
+inline constexpr const char* bits_help =
+    "16: .ppm, .png and .exr hold 16 bits a value [auto: .ppm and .png 8, .exr 32]";
 
 /// -o FILE, repeatable and required.
 void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& files);

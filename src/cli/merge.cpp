@@ -39,6 +39,7 @@ Run add_merge(CLI::App& app) {
   app.add_option("FILM", merge->inputs, "films of disjoint --samples ranges of one render")->required();
   add_outputs(app, merge->outputs);
   merge->flags.add_to(app);
+  merge->flags.add_bits_to(app);
   return [merge] { return merge->run(); };
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "castray/error.h"
+#include "cli/display_flags.h"
 #include "cli/values.h"
 #include "core/nearest.h"
 #include "core/text.h"
@@ -201,6 +202,8 @@ const RenderFlag flags[] = {
      [](Request r, Text f, Text t) { r.display.exposure = parse_number(f, t); }},
     {"tone", "srgb|linear|gamma:G", "curve of .ppm and .png; gamma:G is value^G [srgb]", output,
      [](Request r, Text, Text t) { r.display.tone = parse_tone_curve(t); }},
+    {"bits", "auto|16", bits_help, output,
+     [](Request r, Text f, Text t) { r.display.bits16 = parse_bits(f, t); }, false},
     {"progress", "auto|bar|lines|off", "on stderr [auto: a bar on a terminal, else lines]", output,
      [](Request r, Text f, Text t) {
        r.progress = parse_choice<ProgressMode>(f, t,

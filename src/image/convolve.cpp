@@ -7,20 +7,36 @@ namespace castray {
 
 namespace {
 
-/// The weighted sum around position `at` of a line of `length` values, `stride` apart.
-float sum_at(const float* line, int at, int length, std::ptrdiff_t stride, const Taps& taps, Border border) {
+Plane transposed(const Plane& plane) {
+  Plane result(plane.height, plane.width);
+  for (int y = 0; y < plane.height; ++y)
+    for (int x = 0; x < plane.width; ++x) result.at(y, x) = plane.at(x, y);
+  return result;
+}
+
+/// Along columns: whole rows are added up, which compilers turn into vector instructions.
+Plane convolve_columns(const Plane& plane, const Taps& taps, Border border) {
   const int radius = static_cast<int>(taps.size() / 2);
-  double sum = 0, inside = 0, all = 0;
-  const bool cut = border == Border::cut && (at < radius || at + radius >= length);
-  for (int i = -radius; i <= radius; ++i) {
-    const double weight = taps[static_cast<std::size_t>(i + radius)];
-    const int there = std::clamp(at + i, 0, length - 1);
-    all += weight;
-    if (cut && there != at + i) continue;
-    inside += weight;
-    sum += weight * line[there * stride];
+  const auto width = static_cast<std::size_t>(plane.width);
+  const double all = std::accumulate(taps.begin(), taps.end(), 0.0);
+  Plane result(plane.width, plane.height);
+  std::vector<double> sums(width);
+  for (int y = 0; y < plane.height; ++y) {
+    std::fill(sums.begin(), sums.end(), 0.0);
+    double used = 0;
+    for (int i = -radius; i <= radius; ++i) {
+      const int there = std::clamp(y + i, 0, plane.height - 1);
+      if (border == Border::cut && there != y + i) continue;
+      const double weight = taps[static_cast<std::size_t>(i + radius)];
+      const float* row = &plane.values[static_cast<std::size_t>(there) * width];
+      used += weight;
+      for (std::size_t x = 0; x < width; ++x) sums[x] += weight * row[x];
+    }
+    const double scale = border == Border::cut ? all / used : 1;
+    for (std::size_t x = 0; x < width; ++x)
+      result.at(static_cast<int>(x), y) = static_cast<float>(scale * sums[x]);
   }
-  return static_cast<float>(cut ? sum * all / inside : sum);
+  return result;
 }
 
 }  // namespace
@@ -44,19 +60,8 @@ Taps normalised(Taps taps) {
 }
 
 Plane convolve(const Plane& plane, const Taps& along_x, const Taps& along_y, Border border) {
-  const int width = plane.width, height = plane.height;
-  const bool worth_threads = plane.values.size() > 1 << 15;
-  Plane rows(width, height), result(width, height);
-#pragma omp parallel for if (worth_threads)
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      rows.at(x, y) = sum_at(&plane.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)], x,
-                             width, 1, along_x, border);
-#pragma omp parallel for if (worth_threads)
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      result.at(x, y) = sum_at(&rows.values[static_cast<std::size_t>(x)], y, height, width, along_y, border);
-  return result;
+  const Plane rows = convolve_columns(transposed(plane), along_x, border);
+  return convolve_columns(transposed(rows), along_y, border);
 }
 
 }  // namespace castray

@@ -1,3 +1,4 @@
+#include <half.h>
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFrameBuffer.h>
@@ -8,8 +9,10 @@
 #include <ImfStringAttribute.h>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <ostream>
+#include <type_traits>
 
 #include "castray/error.h"
 #include "image/formats.h"
@@ -63,14 +66,26 @@ std::array<const char*, 3> channels_of(const Imf::ChannelList& channels) {
   throw InputError("it has neither channels R, G, B nor Y, but " + (found.empty() ? "none" : found));
 }
 
-/// A frame buffer takes writable memory, though writing only reads it.
-void add_to(Imf::FrameBuffer& frame, const Image& image, const std::array<const char*, 3>& names,
+/// Adds three channels, interleaved. (A frame buffer takes writable memory, though writing only reads it.)
+template <class T>
+void add_to(Imf::FrameBuffer& frame, const T* values, int width, const std::array<const char*, 3>& names,
             const Imath::Box2i& window) {
-  const std::size_t row = sizeof(Vec3f) * static_cast<std::size_t>(image.width);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const void* first = reinterpret_cast<const float*>(image.pixels.data()) + c;
-    frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, first, window, sizeof(Vec3f), row));
-  }
+  constexpr Imf::PixelType type = std::is_same_v<T, half> ? Imf::HALF : Imf::FLOAT;
+  for (std::size_t c = 0; c < 3; ++c)
+    frame.insert(names[c], Imf::Slice::Make(type, values + c, window, 3 * sizeof(T),
+                                            3 * sizeof(T) * static_cast<std::size_t>(width)));
+}
+
+const float* floats_of(const Image& image) { return reinterpret_cast<const float*>(image.pixels.data()); }
+
+/// Finite values stay finite.
+std::vector<half> halves_of(const Image& image) {
+  std::vector<half> halves;
+  halves.reserve(3 * image.pixels.size());
+  for (const Vec3f& v : image.pixels)
+    for (int c = 0; c < 3; ++c)
+      halves.emplace_back(std::isfinite(v[c]) ? std::clamp<float>(v[c], -HALF_MAX, HALF_MAX) : v[c]);
+  return halves;
 }
 
 bool has_variances(const Imf::ChannelList& channels) {
@@ -91,10 +106,10 @@ ImageFile read_from(const std::string& name, std::string_view bytes) {
   ImageFile result{Image(static_cast<int>(width), static_cast<int>(height)), false, {}};
   Image& image = result.image;
   Imf::FrameBuffer frame;
-  add_to(frame, image, names, window);
+  add_to(frame, floats_of(image), image.width, names, window);
   if (has_variances(header.channels())) {
     result.noise = Noise{Image(image.width, image.height)};
-    add_to(frame, result.noise->variance, variances, window);
+    add_to(frame, floats_of(result.noise->variance), image.width, variances, window);
     if (const auto* freedom = header.findTypedAttribute<Imf::DoubleAttribute>(freedom_name))
       result.noise->freedom = freedom->value();
   }
@@ -119,16 +134,19 @@ ImageFile read_exr(const std::string& name, std::string_view bytes) {
 }
 
 void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
-               const std::optional<Noise>& noise) {
+               const std::optional<Noise>& noise, bool bits16) {
   Imf::Header header(image.width, image.height);
   Imf::FrameBuffer frame;
-  const auto add = [&](const Image& values, const std::array<const char*, 3>& names) {
-    for (const char* name : names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    add_to(frame, values, names, header.dataWindow());
-  };
-  add(image, rgb);
+  const Imf::PixelType rgb_type = bits16 ? Imf::HALF : Imf::FLOAT;
+  for (const char* name : rgb) header.channels().insert(name, Imf::Channel(rgb_type));
+  const std::vector<half> halves = bits16 ? halves_of(image) : std::vector<half>();
+  if (bits16)
+    add_to(frame, halves.data(), image.width, rgb, header.dataWindow());
+  else
+    add_to(frame, floats_of(image), image.width, rgb, header.dataWindow());
   if (noise) {
-    add(noise->variance, variances);
+    for (const char* name : variances) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    add_to(frame, floats_of(noise->variance), image.width, variances, header.dataWindow());
     header.insert(freedom_name, Imf::DoubleAttribute(noise->freedom));
   }
   for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));

@@ -21,15 +21,16 @@ Film parse_film(const std::string& name, std::string_view bytes);
 void write_pfm(std::ostream& out, const Image& image);
 void write_hdr(std::ostream& out, const Image& image);
 void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
-               const std::optional<Noise>& noise);
+               const std::optional<Noise>& noise, bool bits16);
 
-/// 8-bit RGB, top row first.
-struct Image8 {
+/// RGB of 8 or 16 bits, big-endian, top row first.
+struct QuantisedImage {
   int width = 0, height = 0;
   std::vector<unsigned char> bytes;
+  int bits = 8;
 };
-void write_ppm(std::ostream& out, const Image8& image);
-void write_png(std::ostream& out, const Image8& image, const Metadata& metadata);
+void write_ppm(std::ostream& out, const QuantisedImage& image);
+void write_png(std::ostream& out, const QuantisedImage& image, const Metadata& metadata);
 
 /// Throws InputError unless an image of this size can be in a file of this length, whose format packs at most
 /// `pixels_per_byte`: asked before memory is taken, so that a forged header cannot exhaust it.

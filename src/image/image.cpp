@@ -13,12 +13,16 @@ namespace castray {
 
 namespace {
 
-Image8 quantised(const Image& image, const Display& display) {
+QuantisedImage quantised(const Image& image, const Display& display) {
   const Image values = displayed(image, display);
-  Image8 result{image.width, image.height, {}};
-  result.bytes.reserve(3 * values.pixels.size());
+  QuantisedImage result{image.width, image.height, {}, display.bits16 ? 16 : 8};
+  result.bytes.reserve((display.bits16 ? 6 : 3) * values.pixels.size());
   for (const Vec3f& v : values.pixels)
-    for (int c = 0; c < 3; ++c) result.bytes.push_back(static_cast<unsigned char>(std::lround(255 * v[c])));
+    for (int c = 0; c < 3; ++c) {
+      const long value = std::lround((display.bits16 ? 65535 : 255) * v[c]);
+      if (display.bits16) result.bytes.push_back(static_cast<unsigned char>(value >> 8));
+      result.bytes.push_back(static_cast<unsigned char>(value & 255));
+    }
   return result;
 }
 
@@ -28,7 +32,7 @@ using Write = void (*)(std::ostream& out, const Image& image, const Display& dis
 
 struct Format {
   const char* suffix;
-  bool is_8bit;
+  bool is_encoded;
   Read read;
   Write write;  ///< null: not from an image
 };
@@ -57,8 +61,8 @@ constexpr Format formats[] = {
        write_hdr(out, image);
      }},
     {".exr", false, read_exr,
-     [](std::ostream& out, const Image& image, const Display&, const Metadata& metadata,
-        OptionalNoise noise) { write_exr(out, image, metadata, noise); }},
+     [](std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
+        OptionalNoise noise) { write_exr(out, image, metadata, noise, display.bits16); }},
     {".film", false, read_film_image, nullptr},
 };
 
@@ -134,7 +138,7 @@ bool is_variance_file(const std::filesystem::path& file) {
 }
 
 bool is_image_format(const std::filesystem::path& file) { return find_format(file); }
-bool is_8bit_format(const std::filesystem::path& file) { return format_of(file).is_8bit; }
+bool is_encoded_format(const std::filesystem::path& file) { return format_of(file).is_encoded; }
 bool is_film_format(const std::filesystem::path& file) { return !format_of(file).write; }
 
 }  // namespace castray

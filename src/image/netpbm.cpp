@@ -124,8 +124,8 @@ ImageFile read_pfm(const std::string& name, std::string_view bytes) {
   return {std::move(image), false, {}};
 }
 
-void write_ppm(std::ostream& out, const Image8& image) {
-  out << "P6\n" << image.width << ' ' << image.height << "\n255\n";
+void write_ppm(std::ostream& out, const QuantisedImage& image) {
+  out << "P6\n" << image.width << ' ' << image.height << (image.bits == 16 ? "\n65535\n" : "\n255\n");
   out.write(reinterpret_cast<const char*>(image.bytes.data()),
             static_cast<std::streamsize>(image.bytes.size()));
 }

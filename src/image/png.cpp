@@ -94,16 +94,16 @@ void write_bytes(png_structp png, png_bytep from, std::size_t count) {
       ->write(reinterpret_cast<const char*>(from), static_cast<std::streamsize>(count));
 }
 
-bool write_all(const Writer& writer, const Image8& image, const std::vector<png_text>& texts) {
+bool write_all(const Writer& writer, const QuantisedImage& image, const std::vector<png_text>& texts) {
   if (setjmp(png_jmpbuf(writer.png))) return false;
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width),
-               static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               static_cast<png_uint_32>(image.height), image.bits, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_text(writer.png, writer.info, texts.data(), static_cast<int>(texts.size()));
   png_write_info(writer.png, writer.info);
+  const std::size_t row_bytes = image.bytes.size() / static_cast<std::size_t>(image.height);
   for (int y = 0; y < image.height; ++y)
-    png_write_row(writer.png, image.bytes.data() +
-                                  3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width));
+    png_write_row(writer.png, image.bytes.data() + static_cast<std::size_t>(y) * row_bytes);
   png_write_end(writer.png, nullptr);
   return true;
 }
@@ -158,7 +158,7 @@ ImageFile read_png(const std::string& name, std::string_view bytes) {
   return result;
 }
 
-void write_png(std::ostream& out, const Image8& image, const Metadata& metadata) {
+void write_png(std::ostream& out, const QuantisedImage& image, const Metadata& metadata) {
   std::vector<png_text> texts;
   for (const auto& [key, value] : metadata) texts.push_back(text_of(key, value));
   Failure failure;
