@@ -32,6 +32,8 @@ struct Compare {
     const LimitsFile limits = all_limits();
     flags.display();
     const bool folders = fs::is_directory(image);
+    if (folders && !fs::exists(reference))
+      throw InputError({reference.string()}, "does not exist; 'castray accept' makes references of images");
     if (folders != fs::is_directory(reference))
       throw InputError({(folders ? image : reference).string()},
                        "is a folder, and the other is not; give two of a kind");

@@ -86,9 +86,14 @@ json to_json(const Comparison& c) {
   return object;
 }
 
+/// `text` with U+FFFD for bytes that are not UTF-8, as names of files may have.
+std::string utf8(const std::string& text) {
+  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
 std::string xml(const std::string& text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : utf8(text)) {
     if (c == '&')
       escaped += "&amp;";
     else if (c == '<')
@@ -141,7 +146,7 @@ std::string junit_report(const std::vector<Comparison>& comparisons) {
   const auto total = static_cast<std::ptrdiff_t>(comparisons.size());
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<testsuite name=\"castray compare\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
+      "<testsuite name=\"castray compare\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\">\n",
       total, total - passed - errors, errors);
   for (const Comparison& c : comparisons) {
     text += fmt::format("  <testcase classname=\"castray.compare\" name=\"{}\"", xml(c.name));
@@ -150,7 +155,8 @@ std::string junit_report(const std::vector<Comparison>& comparisons) {
       continue;
     }
     const char* kind = c.error.empty() ? "failure" : "error";
-    text += fmt::format(">\n    <{} message=\"{}\">{}</{}>\n  </testcase>\n", kind, xml(complaint(c)),
+    text += fmt::format(">\n    <{} type=\"{}\" message=\"{}\">{}</{}>\n  </testcase>\n", kind,
+                        c.error.empty() ? "beyond the limits" : "cannot be compared", xml(complaint(c)),
                         xml(c.error.empty() ? table(c) : c.error), kind);
   }
   return text + "</testsuite>\n";

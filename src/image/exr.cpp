@@ -1,6 +1,6 @@
 #include <half.h>
 #include <ImfChannelList.h>
-#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
@@ -110,7 +110,7 @@ ImageFile read_from(const std::string& name, std::string_view bytes) {
   if (has_variances(header.channels())) {
     result.noise = Noise{Image(image.width, image.height)};
     add_to(frame, floats_of(result.noise->variance), image.width, variances, window);
-    if (const auto* freedom = header.findTypedAttribute<Imf::DoubleAttribute>(freedom_name))
+    if (const auto* freedom = header.findTypedAttribute<Imf::FloatAttribute>(freedom_name))
       result.noise->freedom = freedom->value();
   }
   file.setFrameBuffer(frame);
@@ -121,6 +121,16 @@ ImageFile read_from(const std::string& name, std::string_view bytes) {
     if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute.attribute()))
       result.metadata[attribute.name()] = text->value();
   return result;
+}
+
+/// Names that the format gives a meaning of its own are left out.
+void add_metadata(Imf::Header& header, const Metadata& metadata) {
+  constexpr std::string_view reserved[] = {
+      "type", "name", "view", "version", "chunkCount", "tiles", "maxSamplesPerPixel"};
+  for (const auto& [key, value] : metadata)
+    if (header.find(key) == header.end() &&
+        std::find(std::begin(reserved), std::end(reserved), key) == std::end(reserved))
+      header.insert(key, Imf::StringAttribute(value));
 }
 
 }  // namespace
@@ -147,9 +157,9 @@ void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
   if (noise) {
     for (const char* name : variances) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     add_to(frame, floats_of(noise->variance), image.width, variances, header.dataWindow());
-    header.insert(freedom_name, Imf::DoubleAttribute(noise->freedom));
+    header.insert(freedom_name, Imf::FloatAttribute(static_cast<float>(noise->freedom)));
   }
-  for (const auto& [key, value] : metadata) header.insert(key, Imf::StringAttribute(value));
+  add_metadata(header, metadata);
   StreamOut stream(out);
   Imf::OutputFile file(stream, header, 0);
   file.setFrameBuffer(frame);

@@ -6,6 +6,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+from xml.etree import ElementTree
 
 from playwright.sync_api import sync_playwright
 
@@ -27,10 +28,23 @@ def make_page(castray, folder):
     write_pfm(folder / "reference" / "z.pfm", lambda x, y: (0.5, 0.5, 0.5))
     page = folder / "page.html"
     run = subprocess.run(
-        [castray, "compare", "image", "reference", "--max", "mse=1e-6", "--html", page.name], cwd=folder, check=False
+        [castray, "compare", "image", "reference", "--max", "mse=1e-6", "--html", page.name, "--junit", "junit.xml"],
+        cwd=folder,
+        check=False,
     )
     assert run.returncode == 2, run.returncode
     return page
+
+
+def check_junit(file):
+    suite = ElementTree.parse(file).getroot()
+    assert suite.tag == "testsuite" and suite.get("name")
+    cases = suite.findall("testcase")
+    assert [(case.get("name"), [kind.tag for kind in case]) for case in cases] == [
+        ("a.pfm", []), ("m.pfm", ["failure"]), ("z.pfm", ["error"])]
+    assert all(case.get("classname") and all(kind.get("message") and kind.text for kind in case) for case in cases)
+    counts = {name: int(suite.get(name)) for name in ("tests", "failures", "errors", "skipped")}
+    assert counts == {"tests": 3, "failures": 1, "errors": 1, "skipped": 0}, counts
 
 
 def colour(page, x, y):
@@ -136,7 +150,8 @@ def main():
     pictures = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else None
     with tempfile.TemporaryDirectory() as name, sync_playwright() as playwright:
         address = make_page(castray, pathlib.Path(name)).as_uri()
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        check_junit(pathlib.Path(name) / "junit.xml")
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox", "--disable-dev-shm-usage"])
         problems = []
         for kind, size, scheme in [("desktop", (1280, 900), "light"), ("phone", (390, 844), "light"),
                                    ("dark", (1280, 900), "dark")]:

@@ -113,6 +113,7 @@ def metrics(x, r):
         "mae": float(error.mean()),
         "psnr": float(peak_signal_noise_ratio(r, x, data_range=peak)) if mse > 0 else None,
         "max_error": float(error.max()),
+        "percent_beyond_0.05": float(100 * (error > 0.05).any(axis=2).mean()),
         "bias_rgb": [float(v) for v in difference.mean((0, 1))],
         "ssim": ssim(shown(x), shown(r)),
         "flip": flip(shown(x), shown(r), "LDR"),

@@ -24,6 +24,7 @@ TEST_CASE("metrics agree with numpy, scikit-image and flip-evaluator on generate
     };
     close("mse", m.mse), close("rmse", m.rmse), close("relmse", m.relmse), close("mae", m.mae);
     close("max_error", m.max_error);
+    close("percent_beyond_0.05", percent_beyond(image, reference, 0.05));
     for (int c = 0; c < 3; ++c)
       CHECK(m.bias[c] == Approx(values["bias_rgb"][static_cast<std::size_t>(c)].get<double>()).margin(1e-15));
     if (values["psnr"].is_null())
