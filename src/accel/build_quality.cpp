@@ -26,4 +26,8 @@ BuildQuality choose_build(BuildQuality asked, double wasted, std::uint32_t trian
   return asked == BuildQuality::best || pays ? BuildQuality::best : BuildQuality::fast;
 }
 
+const char* name_of(BuildQuality quality) {
+  return quality == BuildQuality::best ? "best" : quality == BuildQuality::fast ? "fast" : "auto";
+}
+
 }  // namespace castray

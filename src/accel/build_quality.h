@@ -16,4 +16,7 @@ double wasted_boxes(const MeshView& mesh);
 /// wasted box, and each triangle costs 1.6 us more to build (measured, docs/benchmarks.md).
 BuildQuality choose_build(BuildQuality asked, double wasted, std::uint32_t triangles, double rays);
 
+/// "auto", "fast" or "best".
+const char* name_of(BuildQuality quality);
+
 }  // namespace castray

@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <CLI/CLI.hpp>
@@ -7,11 +7,13 @@
 #include <set>
 #include <string>
 
+#include "accel/build_quality.h"
 #include "castray/image.h"
 #include "castray/scene.h"
 #include "cli/commands.h"
 #include "cli/image_info.h"
 #include "core/text.h"
+#include "integrate/plan.h"
 
 namespace castray::cli {
 
@@ -90,6 +92,14 @@ void print_materials(const Scene& scene) {
     fmt::print("  {}: {}\n", printable(material.name), describe(material, scene));
 }
 
+/// What a render with default flags would choose.
+void print_plan(const Scene& scene) {
+  const Plan plan = make_plan(scene, {});
+  fmt::print("kernel     {}\n", plan.kernel);
+  if (!plan.list) fmt::print("tree       build {}\n", name_of(plan.build));
+  fmt::print("skipped    {}\n", fmt::join(plan.skipped, ", "));
+}
+
 int print_info(const std::string& file) {
   const Scene scene = load_scene(file);
   fmt::print("scene      {}\n", file);
@@ -97,6 +107,7 @@ int print_info(const std::string& file) {
   print_lights(scene);
   fmt::print("image      {} x {}\n", scene.width, scene.height);
   print_materials(scene);
+  print_plan(scene);
   for (const std::string& key : scene.ignored_keys) fmt::print("ignored    {}\n", key);
   for (const std::string& warning : scene.warnings) fmt::print("warning    {}\n", warning);
   return 0;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 
+#include "accel/build_quality.h"
 #include "core/sequences.h"
 #include "integrate/kernel_scene.h"
 #include "integrate/row_loop.h"
@@ -140,8 +141,7 @@ std::string accel_summary(const KernelSceneData& data, const Plan& plan, std::si
   if (!data.bvh) return fmt::format("list: {} triangles as {} facets", triangles, data.facets.facets.size());
   const BvhStats& b = data.bvh->stats();
   return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s, build {}",
-                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds,
-                     plan.build == BuildQuality::best ? "best" : "fast");
+                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds, name_of(plan.build));
 }
 
 }  // namespace

@@ -279,3 +279,9 @@ TEST_CASE("an .obj is seen by an automatic view or by camera flags") {
   CHECK(difference < 0.01 * sum);  // the same view of the same box, but for roundings
   CHECK(read_image(folder / "a.pfm").image.pixels != flags.pixels);
 }
+
+TEST_CASE("info tells what a render would choose") {
+  const TemporaryFolder folder;
+  CHECK_THAT(run_castray({"info", cornell}, folder.path()).out,
+             Contains("kernel     list, diffuse") && Contains("skipped    tree"));
+}
