@@ -60,6 +60,7 @@ KernelLight facet_light(const Facet& f, const Material& material) {
   put(light.emission, material.ke);
   light.area = static_cast<float>(length(normal));
   light.two_sided = material.two_sided_emission;
+  light.rectangle = std::abs(dot(b - a, d - a)) <= 1e-6 * length(b - a) * length(d - a);
   light.error = f.error;
   return light;
 }
@@ -72,6 +73,7 @@ KernelLight triangle_light(const Facet& f, int first, const Material& material) 
   KernelLight light = facet_light(triangle, material);
   light.area /= 2;
   light.triangle = 1;
+  light.rectangle = 0;
   return light;
 }
 
@@ -187,6 +189,18 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.bvh = bvh->view();
     view.triangles = triangle_table(scene, material_words);
   }
+  add_lights(scene, plan, threads);
+  view.materials = materials.data();
+  view.albedos = albedos.data();
+  view.textures = textures.data();
+  view.texture_count = static_cast<std::uint32_t>(textures.size());
+  view.camera = make_kernel_camera(scene.camera, width, height);
+  put(view.environment, scene.environment);
+  view.slack = 0x1p-20f;
+  view.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
+}
+
+void KernelSceneData::add_lights(const Scene& scene, const Plan& plan, int threads) {
   const double power = finish_lights(lights);
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const Material& m = scene.materials[i];
@@ -194,15 +208,16 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
       materials[i].light_density =
           static_cast<float>(luminance(m.ke) * (m.two_sided_emission ? 2 : 1) / power);
   }
-  view.materials = materials.data();
-  view.albedos = albedos.data();
-  view.textures = textures.data();
-  view.texture_count = static_cast<std::uint32_t>(textures.size());
-  view.lights = {lights.data(), static_cast<std::uint32_t>(lights.size())};
-  view.camera = make_kernel_camera(scene.camera, width, height);
-  put(view.environment, scene.environment);
-  view.slack = 0x1p-20f;
-  view.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
+  LightList& list = view.lights;
+  list.lights = lights.data();
+  list.count = static_cast<std::uint32_t>(lights.size());
+  list.by_solid_angle = plan.lights_by_solid_angle;
+  if (plan.choose_lights_by_importance && lights.size() > 1) {
+    light_tree = LightTree(lights, threads);
+    list.cut = light_tree.cut().data();
+    list.cut_count = static_cast<std::uint32_t>(light_tree.cut().size());
+    list.tree = light_tree.pairs().data();
+  }
 }
 
 }  // namespace castray

@@ -7,6 +7,7 @@
 #include "castray/render.h"
 #include "castray/scene.h"
 #include "integrate/facets.h"
+#include "integrate/light_tree.h"
 #include "integrate/plan.h"
 #include "kernels/api.h"
 
@@ -25,7 +26,11 @@ struct KernelSceneData {
   std::vector<KernelAlbedo> albedos;
   std::vector<KernelTexture> textures;
   std::vector<KernelLight> lights;
+  LightTree light_tree;  ///< where lights are chosen by importance
   KernelScene view{};
+
+ private:
+  void add_lights(const Scene& scene, const Plan& plan, int threads);
 };
 
 }  // namespace castray

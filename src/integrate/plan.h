@@ -11,14 +11,16 @@ namespace castray {
 
 /// What is chosen for a scene before it is rendered.
 struct Plan {
-  bool list = false;                        ///< a flat list instead of a tree
-  std::uint32_t features = 0;               ///< KernelFeature set of the kernel
-  bool mis = false;                         ///< light and BSDF sampling share emission
-  int suffixes = 0;                         ///< shared by each 8x8 tile; 0: no sharing
-  int light_points = 0;                     ///< shared by each tile
-  BuildQuality build = BuildQuality::fast;  ///< of the tree
-  std::string kernel;                       ///< what was chosen, readable
-  std::vector<std::string> skipped;         ///< what the scene does not need
+  bool list = false;                         ///< a flat list instead of a tree
+  std::uint32_t features = 0;                ///< KernelFeature set of the kernel
+  bool mis = false;                          ///< light and BSDF sampling share emission
+  int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
+  int light_points = 0;                      ///< shared by each tile
+  bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
+  bool lights_by_solid_angle = false;        ///< points on them, where that can be had
+  BuildQuality build = BuildQuality::fast;   ///< of the tree
+  std::string kernel;                        ///< what was chosen, readable
+  std::vector<std::string> skipped;          ///< what the scene does not need
 };
 
 Plan make_plan(const Scene& scene, const RenderOptions& options);

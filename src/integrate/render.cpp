@@ -69,8 +69,6 @@ void check_wavefront(const RenderOptions& o) {
   require(o.fault == Fault::none, "--fault: only the reference shows the faults; add --integrator reference");
   require(o.precision == Precision::float32,
           "--precision double: only the reference; add --integrator reference");
-  require(o.lights == LightSampling::automatic || o.lights == LightSampling::area,
-          "--lights: only area so far; leave it at auto");
   const Reuse& r = o.reuse;
   require(r.automatic || r.width == 0 ||
               (r.width == 8 && r.height == 8 && r.suffixes >= 1 && r.suffixes <= 64 &&

@@ -69,17 +69,35 @@ struct KernelLight {
   float area;
   uint32_t triangle;  ///< 1: a triangle
   uint32_t two_sided;
-  float error;        ///< bound of the distance of a computed point from the exact light
-  float density;      ///< of a point on it by light sampling, per area; what shares between techniques use
-  float probability;  ///< of choosing this light by power
-  float cumulative;   ///< of the lights before this one
-  float pad;
+  float error;         ///< bound of the distance of a computed point from the exact light
+  float density;       ///< of a point on it by light sampling, per area; what shares between techniques use
+  float probability;   ///< of choosing this light by power
+  float cumulative;    ///< of the lights before this one
+  uint32_t rectangle;  ///< 1: its edges are perpendicular
 };
 inline constexpr int light_floats = sizeof(KernelLight) / sizeof(float);
+
+/// Bounds of lights: a sphere; a cone that holds the normals of emitting sides, by the cosine and sine of its
+/// half angle, 0 and 1 where that is above 90 degrees; and their power.
+struct LightBounds {
+  float center[3], radius;
+  float axis[3], cos_spread;
+  float sin_spread, power;
+  uint32_t next;  ///< the children's pair in the tree, or light_leaf + the light
+  uint32_t pad;
+};
+inline constexpr uint32_t light_leaf = 0x80000000u;
+
+/// Nodes of a tree that are looked at one by one, before a descent below the chosen one.
+inline constexpr int most_light_cut = 32;
 
 struct LightList {
   const KernelLight* lights;
   uint32_t count;
+  uint32_t cut_count;       ///< 0: lights are chosen by power, not by what they may bring to a point
+  const LightBounds* cut;   ///< nodes that hold all lights, each once
+  const LightBounds* tree;  ///< pairs of siblings
+  bool by_solid_angle;      ///< points are uniform in solid angle where that can be had
 };
 
 /// Sample (px,py) of the full image looks along corner + px * dx + py * dy.

@@ -1,21 +1,21 @@
 #pragma once
 
-#include "kernels/api.h"
-#include "kernels/vec.h"
+#include "kernels/light_choice.h"
+#include "kernels/rectangle.h"
 
 namespace castray::CASTRAY_ISA {
 
-/// A point on a light, drawn by power and uniformly by area. `weight` is the emitted radiance over the
-/// density of the point with respect to area.
+/// A point on a light. `weight` is the emitted radiance over the density with which the point was drawn,
+/// with respect to area.
 struct LightPoint {
   Vec p, normal, weight;
-  Float density;  ///< of the point, per area, as materials have it
+  Float density;  ///< per area, of a choice by power and area: what shares with BSDF sampling go by
   Mask two_sided;
   Float error;
 };
 
 /// The light whose stretch of the cumulative probabilities holds u.
-CASTRAY_INLINE Uint choose_light(const LightList& list, Float u) {
+CASTRAY_INLINE Uint choose_by_power(const LightList& list, Float u) {
   Uint low(0u);
   for (uint32_t step = list.count > 1 ? 1u << (31 - __builtin_clz(list.count - 1)) : 0u; step; step >>= 1) {
     const Uint next = low + Uint(step);
@@ -27,17 +27,38 @@ CASTRAY_INLINE Uint choose_light(const LightList& list, Float u) {
   return low;
 }
 
-CASTRAY_INLINE LightPoint sample_light(const LightList& list, Float choice, Float u, Float v) {
-  const Uint record = choose_light(list, choice) * uint32_t{light_floats};
+/// One of the lights, for the receiver. Of u, `deep` serves where u's digits do not suffice.
+CASTRAY_INLINE LightChoice choose_light(const LightList& list, Float u, Float deep,
+                                        const Receiver& receiver) {
+  if (list.cut_count > 0) return choose_by_importance(list, u, deep, receiver);
+  const Uint light = choose_by_power(list, u);
+  return {light, gather(&list.lights->probability, light * uint32_t{light_floats})};
+}
+
+/// A point on a light. `choice` and `deep` choose the light, u and v the point.
+CASTRAY_INLINE LightPoint sample_light(const LightList& list, const Receiver& receiver, Float choice,
+                                       Float deep, Float u, Float v) {
+  const LightChoice chosen = choose_light(list, choice, deep, receiver);
+  const Uint record = chosen.light * uint32_t{light_floats};
   const KernelLight& first = *list.lights;
   const Mask triangle = gather(&first.triangle, record) == Uint(1u);
   const Mask fold = triangle & (u + v > Float(1.f));
-  const Float a = select(fold, Float(1.f) - u, u), b = select(fold, Float(1.f) - v, v);
-  const Vec p = fma(gather_vec(first.edge1, record), a,
-                    fma(gather_vec(first.edge2, record), b, gather_vec(first.origin, record)));
-  const Float inverse_density = gather(&first.area, record) / gather(&first.probability, record);
+  Float a = select(fold, Float(1.f) - u, u), b = select(fold, Float(1.f) - v, v);
+  const Vec origin = gather_vec(first.origin, record), edge1 = gather_vec(first.edge1, record),
+            edge2 = gather_vec(first.edge2, record), normal = gather_vec(first.normal, record);
+  Float area = gather(&first.area, record);
+  if (list.by_solid_angle) {
+    const RectanglePoint seen = sample_seen_rectangle({origin - receiver.p, edge1, edge2, normal}, u, v);
+    const Mask can = seen.valid & (gather(&first.rectangle, record) == Uint(1u));
+    a = select(can, seen.a, a);
+    b = select(can, seen.b, b);
+    area = select(can, seen.inverse_density, area);
+  }
+  const Vec p = fma(edge1, a, fma(edge2, b, origin));
+  const Float inverse_density =
+      select(chosen.probability > Float(0.f), area / chosen.probability, Float(0.f));
   return {p,
-          gather_vec(first.normal, record),
+          normal,
           gather_vec(first.emission, record) * inverse_density,
           gather(&first.density, record),
           gather(&first.two_sided, record) == Uint(1u),

@@ -47,13 +47,42 @@ CASTRAY_INLINE float stratum_of(const KernelOptions& options) {
   return (float)(tile_pixels / options.suffixes);
 }
 
+/// The points of a tile, none of which lets light through, as one receiver.
+CASTRAY_INLINE Receiver receiver_of(const Gatherers& tile) {
+  Float x[tile_vectors], y[tile_vectors], z[tile_vectors];
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec normal = load(tile.x.normal, tile.first + i * width);
+    x[i] = normal.x;
+    y[i] = normal.y;
+    z[i] = normal.z;
+  }
+  const Float one(1.f);
+  const Vec sum{Float(ordered_sum(x)), Float(ordered_sum(y)), Float(ordered_sum(z))}, mean = normalize(sum);
+  Float least = one;
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec normal = load(tile.x.normal, tile.first + i * width);
+    least = min(least, select(length_squared(normal) > Float(0.f), dot(mean, normal), one));
+  }
+  float cosine = lane(least, 0) - 0x1p-12f;
+  for (int l = 0; l < width; ++l) cosine = lane(least, l) < cosine ? lane(least, l) : cosine;
+  const float* half = tile.box.half;
+  return {broadcast(tile.box.center),
+          mean,
+          Float(__builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])),
+          Float(cosine),
+          Float(__builtin_sqrtf(1 - cosine * cosine)),
+          (Float(0.5f) < Float(cosine)) & (length_squared(sum) > Float(0.f))};
+}
+
 /// The light points of one tile, `count` <= width of them at once.
-CASTRAY_INLINE LightPoint tile_light_points(const Context& c, uint32_t key, int first) {
+CASTRAY_INLINE LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t key, int first) {
   const auto points = (uint32_t)c.options.light_points;
   const Uint index = tile_index(key, c.job.sample, Uint((uint32_t)first) + lane_index(), points);
   const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, 0);
-  LightPoint point = sample_light(c.scene.lights, n.u[0], n.u[1], n.u[2]);
-  const Mask back = point.two_sided & (n.u[3] < Float(0.5f));
+  const Mask second_half = Float(0.5f) <= n.u[3];
+  const Float deep = fma(n.u[3], Float(2.f), select(second_half, Float(-1.f), Float(0.f)));
+  LightPoint point = sample_light(c.scene.lights, tile, n.u[0], deep, n.u[1], n.u[2]);
+  const Mask back = point.two_sided & ~second_half;
   const Float sides = select(point.two_sided, Float(2.f), Float(1.f));
   point.normal = select(back, -point.normal, point.normal);
   point.weight = point.weight * (sides * Float(1.f / (float)points));
@@ -71,8 +100,9 @@ CASTRAY_INLINE void gather_light(Context& c, const Vertices& x, const Box* boxes
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     const Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     const uint32_t key = tile_key(c, tile);
+    const Receiver receiver = receiver_of(gatherers);
     for (int first = 0; first < points; first += width) {
-      const LightPoint point = tile_light_points(c, key, first);
+      const LightPoint point = tile_light_points(c, receiver, key, first);
       for (int l = 0; l < width && first + l < points; ++l) {
         Transfer t;
         transfer<features>(c, {broadcast_lane(point.p, l), broadcast_lane(point.normal, l), -1}, gatherers,
@@ -229,11 +259,7 @@ CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& 
   if (lights.count == 0) return;
   for (int i = 0; i < y.count; i += width) {
     const Mask active = first_lanes(y.count - i);
-    const Float choice = lights.count > 1
-                             ? draw<3>(c.options.sobol, sequence_of(y.names, i), choice_block(1)).u[2]
-                             : Float(0.f);
-    const LightPoint point =
-        sample_light(lights, choice, load(y.names.light_u + i), load(y.names.light_v + i));
+    const LightPoint point = vertex_light_point<features>(c, y, i, 1);
     const Vec p = load(y.p, i);
     const LightSegment segment = connect_light(point, p);
     const Vec wi = segment.towards * segment.inverse_distance;

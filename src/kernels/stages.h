@@ -99,10 +99,11 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
       compress_store(out.error + n, kept, x.error);
       compress_store(out.eta2 + n, kept, load(paths.eta2 + i));
     }
-    compress_store(out.p, n, kept, fma(facing, x.error, x.p));
-    compress_store(out.normal, n, kept, keep_misses ? select(hit, facing, black()) : facing);
-    compress_store(out.albedo, n, kept, keep_misses ? select(hit, albedo, black()) : albedo);
-    compress_store(out.throughput, n, kept, throughput);
+    const auto or_black = [&](Vec v) { return keep_misses ? select(hit, v, black()) : v; };
+    compress_store(out.p, n, kept, or_black(fma(facing, x.error, x.p)));
+    compress_store(out.normal, n, kept, or_black(facing));
+    compress_store(out.albedo, n, kept, or_black(albedo));
+    compress_store(out.throughput, n, kept, or_black(throughput));
     compress_store(out.material + n, kept, x.material | select(front, Uint(0x80000000u), Uint(0u)));
     compress_names(out.names, n, kept, paths.names, i);
     out.count += count(kept);
@@ -150,6 +151,22 @@ CASTRAY_INLINE Vec leave(const Vertices& v, int i, Vec wi) {
   return fma(normal, across, p);
 }
 
+/// A light point for each of the vertices i to i + width - 1, which are number `vertex` of their paths.
+template <uint32_t features>
+CASTRAY_INLINE LightPoint vertex_light_point(const Context& c, const Vertices& vertices, int i,
+                                             uint32_t vertex) {
+  Numbers<4> n{{Float(0.f), Float(0.f), Float(0.f), Float(0.f)}};
+  if (c.scene.lights.count > 1)
+    n = draw<4>(c.options.sobol, sequence_of(vertices.names, i), choice_block(vertex));
+  Mask one_sided(true);
+  if constexpr (features & feature_materials)
+    one_sided = ~(gather(&c.scene.materials->kind, load(vertices.material + i) & 0x7fffffffu) ==
+                  Uint(kind_dielectric));
+  const Receiver receiver = receiving_point(load(vertices.p, i), load(vertices.normal, i), one_sided);
+  return sample_light(c.scene.lights, receiver, n.u[2], n.u[3], load(vertices.names.light_u + i),
+                      load(vertices.names.light_v + i));
+}
+
 /// One light point for each vertex.
 template <uint32_t features>
 CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t vertex, ShadowRays& out) {
@@ -157,11 +174,7 @@ CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t v
   const LightList& lights = c.scene.lights;
   if (lights.count == 0) return;
   for (int i = 0; i < vertices.count; i += width) {
-    const Float choice =
-        lights.count > 1 ? draw<3>(c.options.sobol, sequence_of(vertices.names, i), choice_block(vertex)).u[2]
-                         : Float(0.f);
-    const LightPoint point =
-        sample_light(lights, choice, load(vertices.names.light_u + i), load(vertices.names.light_v + i));
+    const LightPoint point = vertex_light_point<features>(c, vertices, i, vertex);
     const LightSegment segment = connect_light(point, load(vertices.p, i));
     const Vec wi = segment.towards * segment.inverse_distance;
     Vec o = load(vertices.p, i), f_cos;

@@ -150,6 +150,63 @@ TEST_CASE("every form of the wavefront has the same mean", "[statistical]") {
   check("4 suffixes", [](RenderOptions& o) { o.reuse = {false, 8, 8, 4}; });
 }
 
+namespace {
+
+/// The box with 256 lights, away from the ceiling, of very different powers; some tilted, some two-sided.
+Scene unequal_lights(Scene scene) {
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    Material light = scene.material_of(scene.lights[i]);
+    light.ke = light.ke * (i % 7 == 0 ? 3 : 0.5);
+    light.two_sided_emission = i % 11 == 0;
+    Index3& t = scene.triangles[scene.lights[i]];
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3f corner = scene.positions[t[k]];
+      corner.y -= i % 3 == 0 && k == 2 ? 0.35f : 0.3f;
+      t[k] = static_cast<std::uint32_t>(scene.positions.size());
+      scene.positions.push_back(corner);
+    }
+    scene.triangle_material[scene.lights[i]] = static_cast<std::uint16_t>(scene.materials.size());
+    scene.materials.push_back(light);
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("every way of choosing light points has the same mean", "[statistical]") {
+  const auto check = [](const std::string& name, const Scene& scene, const std::vector<Switch>& switches) {
+    RenderOptions reference = wavefront_options(64);
+    reference.mis = Switch::on;
+    const Expected expected(scene, reference, 48);
+    for (const LightSampling lights : {LightSampling::area, LightSampling::solid_angle, LightSampling::tree})
+      for (const Switch mis : switches) {
+        RenderOptions options = wavefront_options(16);
+        options.lights = lights;
+        options.mis = mis;
+        const std::string what = name + ", " + std::to_string(static_cast<int>(lights));
+        expected.check(what, scene, options);
+        expected.check(what + ", plain", scene, plain(options));
+      }
+  };
+  check("one light", standard_scene("cornell_box"), {Switch::on, Switch::off});
+  check("many lights", standard_scene("cornell_lights"), {Switch::off});
+  // Without MIS the following have rare bright samples, too few here for a z-test.
+  check("unequal lights", unequal_lights(standard_scene("cornell_lights")), {Switch::on});
+  check("metal", unequal_lights(box_with([](Material& m) { m.alpha = 0.4; })), {Switch::on});
+  check("glass",
+        unequal_lights(box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; })),
+        {Switch::on});
+}
+
+TEST_CASE("where a camera ray misses nothing is lit, whatever the first triangle is made of") {
+  Scene scene =
+      unequal_lights(box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; }));
+  for (Material& m : scene.materials) m.two_sided_emission = m.emits();
+  const RenderResult result = render(scene, plain(wavefront_options(16)));
+  CHECK(result.film.nonfinite_samples == 0);
+  CHECK(result.film.image().pixels[0] == Vec3f());
+}
+
 TEST_CASE("a limited depth means the same to the wavefront", "[statistical]") {
   const Scene scene = standard_scene("cornell_conductor");
   for (const int depth : {1, 2, 3, 4}) {
