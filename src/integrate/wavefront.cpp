@@ -27,12 +27,18 @@ struct Free {
 struct Workplace {
   std::unique_ptr<void, Free> scratch;
   std::vector<float> radiance;
+  std::vector<std::uint32_t> place;
 
   explicit Workplace(const KernelApi& kernel)
-      : scratch(std::aligned_alloc(64, (kernel.scratch_bytes + 63) / 64 * 64)), radiance(3 * batch_size) {
+      : scratch(std::aligned_alloc(64, (kernel.scratch_bytes + 63) / 64 * 64)),
+        radiance(3 * batch_size),
+        place(2 * batch_size) {
     std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
   }
-  TileResult result() { return {{&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0}; }
+  TileResult result() {
+    return {
+        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0};
+  }
 };
 
 KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
@@ -47,6 +53,9 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   k.mis = plan.mis;
   k.suffixes = plan.suffixes;
   k.light_points = plan.light_points;
+  // from then on so many grids lie over each other that none can be told
+  constexpr std::uint64_t few_samples = 8;
+  k.ragged = plan.suffixes > 0 ? few_samples : 0;
   k.seed =
       hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
   return k;
@@ -65,10 +74,14 @@ struct TileGrid {
       shift_x = static_cast<int>(h % tile_size);
       shift_y = static_cast<int>(h / tile_size % tile_size);
     }
-    x0 = (window.x0 + shift_x) / tile_size;
-    y0 = (window.y0 + shift_y) / tile_size;
-    x1 = (window.x1 + shift_x + tile_size - 1) / tile_size;
-    y1 = (window.y1 + shift_y + tile_size - 1) / tile_size;
+    const int more = sample < options.ragged ? ragged_reach : 0;
+    const auto tile_of = [](int pixel) {
+      return (pixel + tile_size) / tile_size - 1;
+    };  // pixel >= -tile_size
+    x0 = tile_of(window.x0 + shift_x - more);
+    y0 = tile_of(window.y0 + shift_y - more);
+    x1 = tile_of(window.x1 - 1 + shift_x + more) + 1;
+    y1 = tile_of(window.y1 - 1 + shift_y + more) + 1;
   }
 
   TileJob job(int x, int y, std::uint64_t sample) const {
@@ -85,40 +98,45 @@ class Wavefront {
         data_(scene, plan, window_.full_width, window_.full_height, thread_count(options)),
         options_(kernel_options(options, plan)),
         render_tiles_(kernel_.render_tiles[plan.features]),
-        row_locks_(static_cast<std::size_t>(window_.height() / tile_size + 3)) {
+        bands_((window_.height() + tile_size - 1) / tile_size + 1),
+        row_locks_(static_cast<std::size_t>(bands_)) {
     for (int i = 0; i < thread_count(options); ++i) workplaces_.emplace_back(kernel_);
   }
 
   const KernelApi& kernel() const { return kernel_; }
   const KernelSceneData& data() const { return data_; }
 
+  /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
+  /// bands.
   void render_band(int row, const SampleRange& samples, Film& film, RowStats& stats) {
     Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
     TileResult result = workplace.result();
     for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
       const TileGrid grid(window_, options_, s);
-      const int y = grid.y0 + row;
-      if (y >= grid.y1) continue;
-      for (int x = grid.x0; x < grid.x1; x += max_tiles) {
-        const TileJob job = grid.job(x, y, s);
-        render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
-        add(job, result, film, stats);
-      }
+      for (int y = grid.y0 + row; y < grid.y1; y += bands_)
+        for (int x = grid.x0; x < grid.x1; x += max_tiles) {
+          const TileJob job = grid.job(x, y, s);
+          render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
+          add(job, result, film, stats);
+        }
     }
     stats.rays += result.rays;
   }
 
  private:
   /// Adds a job's samples to the film where they lie in its window, under the locks of the rows they share
-  /// with the tiles above and below.
+  /// with other jobs.
   void add(const TileJob& job, const TileResult& result, Film& film, RowStats& stats) {
-    for (int row = 0; row < tile_size; ++row) {
-      const int y = job.y + row;
-      if (y < window_.y0 || y >= window_.y1) continue;
-      const std::lock_guard lock(row_locks_[static_cast<std::size_t>((y - window_.y0) / tile_size)]);
-      for (int x = std::max(job.x, window_.x0); x < std::min(job.x + job.tiles * tile_size, window_.x1);
-           ++x) {
-        const int i = (x - job.x) / tile_size * tile_pixels + row * tile_size + (x - job.x) % tile_size;
+    const int count = job.tiles * tile_pixels;
+    const auto lock_of = [&](int y) { return (y - window_.y0) / tile_size; };
+    const int first = std::max(job.y - ragged_reach, window_.y0);
+    const int last = std::min(job.y + tile_size + ragged_reach, window_.y1) - 1;
+    for (int l = lock_of(first); first <= last && l <= lock_of(last); ++l) {
+      const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
+      for (int i = 0; i < count; ++i) {
+        const auto x = static_cast<int>(result.x[i]), y = static_cast<int>(result.y[i]);
+        if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || lock_of(y) != l)
+          continue;
         const Vec3f radiance{result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
         if (is_finite(radiance))
           film.add(x, y, radiance);
@@ -133,6 +151,7 @@ class Wavefront {
   KernelSceneData data_;
   KernelOptions options_;
   RenderTiles render_tiles_;
+  int bands_;
   std::vector<std::mutex> row_locks_;
   std::vector<Workplace> workplaces_;
 };

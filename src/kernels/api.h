@@ -158,6 +158,7 @@ struct KernelOptions {
   bool mis;             ///< emission found by BSDF sampling shares with light sampling
   int suffixes;         ///< of each tile's pixels whose paths are traced on; 0: no sharing
   int light_points;     ///< shared by a tile
+  uint64_t ragged;      ///< samples before this one swap pixels across the edges of tiles
   uint32_t seed;        ///< hashed; pixel_key starts from it
 };
 
@@ -174,8 +175,13 @@ inline constexpr int tile_pixels = tile_size * tile_size;
 inline constexpr int max_tiles = 8;  ///< of a job
 inline constexpr int batch_size = tile_pixels * max_tiles;
 
-/// One job's result: red, green and blue of pixel i of tile k at 64 k + i, and what it took.
+/// A pixel of a tile of ragged edges lies at most so far outside.
+inline constexpr int ragged_reach = tile_size / 2;
+
+/// One job's result: place in the full image, red, green and blue of pixel i of tile k at 64 k + i, and what
+/// it took.
 struct TileResult {
+  uint32_t *x, *y;  ///< as signed numbers, for pixels left of or above the image
   float* radiance[3];
   uint64_t rays;
 };

@@ -141,7 +141,8 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   Context c{scene, options, job};
   fill(s.ends);
   s.radiance.clear();
-  camera_rays(c, s.paths);
+  place_pixels(c, result);
+  camera_rays(c, result, s.paths);
   closest<features>(c, s.paths, s.ends, true, s.hits);
   surfaces<features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
   keep_direct(c, s);
