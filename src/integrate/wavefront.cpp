@@ -101,6 +101,7 @@ class Wavefront {
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
         row_locks_(static_cast<std::size_t>(bands_)) {
     for (int i = 0; i < thread_count(options); ++i) workplaces_.emplace_back(kernel_);
+    if (!options.jitter) find_first_hits();
   }
 
   const KernelApi& kernel() const { return kernel_; }
@@ -124,6 +125,35 @@ class Wavefront {
   }
 
  private:
+  /// All that the tiles of any sample's grid reach.
+  void find_first_hits() {
+    constexpr int margin = 2 * tile_size;
+    FirstHits& table = data_.view.first_hits;
+    table.x0 = window_.x0 - margin;
+    table.y0 = window_.y0 - margin;
+    table.width = window_.width() + 2 * margin;
+    table.height = window_.height() + 2 * margin;
+    const std::size_t pixels = static_cast<std::size_t>(table.width) * static_cast<std::size_t>(table.height);
+    constexpr std::size_t largest = std::size_t{1} << 29;  // vectors index with 31 bits of bytes
+    if (pixels > largest) return;
+    first_hits_.resize(3 * pixels);
+    first_primitives_.resize(pixels);
+    table.t = &first_hits_[0];
+    table.b1 = &first_hits_[pixels];
+    table.b2 = &first_hits_[2 * pixels];
+    table.primitive = &first_primitives_[0];
+#pragma omp parallel for schedule(dynamic) num_threads(static_cast <int>(workplaces_.size()))
+    for (int y = 0; y < table.height; y += tile_size) {
+      Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
+      TileResult result = workplace.result();
+      for (int x = 0; x < table.width; x += max_tiles * tile_size) {
+        const TileJob job{table.x0 + x, table.y0 + y, 0, 0, max_tiles, options_.ragged};
+        render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
+      }
+    }
+    table.known = true;
+  }
+
   /// Adds a job's samples to the film where they lie in its window, under the locks of the rows they share
   /// with other jobs.
   void add(const TileJob& job, const TileResult& result, Film& film, RowStats& stats) {
@@ -154,6 +184,8 @@ class Wavefront {
   int bands_;
   std::vector<std::mutex> row_locks_;
   std::vector<Workplace> workplaces_;
+  std::vector<float> first_hits_;
+  std::vector<std::uint32_t> first_primitives_;
 };
 
 std::string accel_summary(const KernelSceneData& data, const Plan& plan, std::size_t triangles) {

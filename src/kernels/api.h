@@ -130,6 +130,15 @@ struct KernelTexture {
   int32_t width, height;
 };
 
+/// What the camera's rays hit, where they are the same for all samples: a table over the pixels from (x0,y0)
+/// on.
+struct FirstHits {
+  float *t, *b1, *b2;  ///< null: every sample has a ray of its own
+  uint32_t* primitive;
+  int x0, y0, width, height;
+  bool known;  ///< otherwise they are to be found, and nothing rendered
+};
+
 struct KernelScene {
   FacetList facets;    ///< all of the scene, if there is no tree
   FacetList blockers;  ///< those that can lie between two points of the scene
@@ -142,6 +151,7 @@ struct KernelScene {
   const KernelAlbedo* albedos;
   LightList lights;
   KernelCamera camera;
+  FirstHits first_hits;
   float environment[3];
   float camera_slack;  ///< list test: bound of the distance by which rounding moves a camera ray past a
                        ///< facet's edge

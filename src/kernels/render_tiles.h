@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/first_hits.h"
 #include "kernels/reuse.h"
 #include "kernels/stages.h"
 
@@ -143,7 +144,12 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   s.radiance.clear();
   place_pixels(c, result);
   camera_rays(c, result, s.paths);
-  closest<features>(c, s.paths, s.ends, true, s.hits);
+  const FirstHits& first = scene.first_hits;
+  if (first.known)
+    recall_first_hits(first, result, s.paths.count, s.hits);
+  else
+    closest<features>(c, s.paths, s.ends, true, s.hits);
+  if (first.t && !first.known) return keep_first_hits(first, result, s.paths.count, s.hits);
   surfaces<features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
   keep_direct(c, s);
   if (options.suffixes > 0 && may_have_edges(options, 2))

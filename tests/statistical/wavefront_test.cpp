@@ -207,6 +207,17 @@ TEST_CASE("where a camera ray misses nothing is lit, whatever the first triangle
   CHECK(result.film.image().pixels[0] == Vec3f());
 }
 
+TEST_CASE("without jitter the wavefront agrees with castRay too", "[statistical]") {
+  for (const char* name : {"cornell_conductor", "cornell_lights"}) {
+    const Scene scene = standard_scene(name);
+    RenderOptions options = wavefront_options(4);
+    options.jitter = false;
+    const Expected expected(scene, options);
+    expected.check(name, scene, options);
+    expected.check(std::string(name) + ", plain", scene, plain(options));
+  }
+}
+
 TEST_CASE("a limited depth means the same to the wavefront", "[statistical]") {
   const Scene scene = standard_scene("cornell_conductor");
   for (const int depth : {1, 2, 3, 4}) {

@@ -43,15 +43,18 @@ TEST_CASE("instruction sets with fused multiply-add give the same bytes") {
        {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights", "furnace"})
     for (const bool shared : {true, false}) {
       const Scene scene = standard_scene(name);
-      std::vector<std::vector<Vec3f>> images;
+      std::vector<std::vector<Vec3f>> images, images_by_angle;
       for (const std::string& set : available_sets()) {
         if (!has_fma(set)) continue;
         RenderOptions options = small(set);
         options.reuse.automatic = shared;
         images.push_back(pixels(scene, options));
+        options.lights = LightSampling::solid_angle;
+        images_by_angle.push_back(pixels(scene, options));
       }
       CAPTURE(name, shared);
       for (const auto& image : images) CHECK(image == images[0]);
+      for (const auto& image : images_by_angle) CHECK(image == images_by_angle[0]);
     }
 }
 
@@ -71,9 +74,10 @@ TEST_CASE("the generic kernel gives the same bytes where the arithmetic is the s
 
 TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") {
   const Scene scene = standard_scene("cornell_conductor");
-  for (const bool shared : {true, false}) {
+  for (const auto& [shared, jitter] : {std::pair(true, true), {true, false}, {false, true}, {false, false}}) {
     RenderOptions options = small("auto");
     options.reuse.automatic = shared;
+    options.jitter = jitter;
     options.threads = 1;
     const RenderResult whole = render(scene, options);
     options.threads = 3;
@@ -90,6 +94,17 @@ TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") 
     const Film crop = render(scene, options).film;
     for (int y = 6; y < 29; ++y)
       for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.film.mean(x, y));
+  }
+}
+
+TEST_CASE("tiles with ragged edges and moved grids give every pixel each sample once") {
+  const Scene scene = standard_scene("furnace");
+  RenderOptions options = small("auto");
+  for (std::uint64_t first = 0; first < 12; ++first) {
+    options.samples = SampleRange{first, 1};
+    const Film film = render(scene, options).film;
+    for (int y = 0; y < options.height; ++y)
+      for (int x = 0; x < options.width; ++x) REQUIRE(film.count(x, y) == 1);
   }
 }
 
