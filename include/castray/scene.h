@@ -23,6 +23,7 @@ struct Material {
   Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: constant Fresnel reflectance
   Vec3d ke{0, 0, 0};                 ///< emitted radiance
   double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
+  bool correlated_masking = true;    ///< false, reference integrator only: to compare with renderers without
   double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
   bool two_sided_emission = false;
   int kd_texture = -1;  ///< index into Scene::textures that multiplies kd, or -1

@@ -63,8 +63,9 @@ CASTRAY_INLINE Receiver receiver_of(const Gatherers& tile) {
     const Vec normal = load(tile.x.normal, tile.first + i * width);
     least = min(least, select(length_squared(normal) > Float(0.f), dot(mean, normal), one));
   }
-  float cosine = lane(least, 0) - 0x1p-12f;
+  float cosine = 1;
   for (int l = 0; l < width; ++l) cosine = lane(least, l) < cosine ? lane(least, l) : cosine;
+  cosine -= 0x1p-12f;
   const float* half = tile.box.half;
   return {broadcast(tile.box.center),
           mean,

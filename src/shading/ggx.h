@@ -16,6 +16,7 @@ namespace castray {
 template <class T>
 struct Ggx {
   T alpha;
+  bool correlated = true;  ///< masking and shadowing; false as some renderers have it, G1(wo) G1(wi)
 
   /// Below this width a lobe is treated as a perfect mirror.
   static constexpr T smooth_below = T(1e-4);
@@ -37,6 +38,7 @@ struct Ggx {
 
   /// G2(wo, wi) / (4 wo.z wi.z).
   T shadowing_over_cos(const Vec3<T>& wo, const Vec3<T>& wi) const {
+    if (!correlated) return masking_over_cos(wo) * masking_over_cos(wi);
     return T(0.5) / (wi.z * stretched_length(wo) + wo.z * stretched_length(wi));
   }
 

@@ -21,7 +21,7 @@ class MaterialTable {
 
  private:
   Bsdf<T> make(const Material& m) {
-    const Ggx<T> ggx{static_cast<T>(m.alpha)};
+    const Ggx<T> ggx{static_cast<T>(m.alpha), m.correlated_masking};
     switch (m.type) {
       case MaterialType::conductor:
         return Conductor<T>{Vec3<T>(m.reflectance), ggx};
