@@ -57,8 +57,9 @@ int largest_axis(const Vec3d& n) {
 int axis_of(const Facet& f) { return largest_axis({f.normal[0], f.normal[1], f.normal[2]}); }
 
 /// How far the exact facet can be from the rounded plane, plus the rounding of a point computed on that
-/// plane: a dot product of three terms and an offset, a scaled step along the normal, the sum, and the step to
-/// the middle (gamma(9) at most).
+/// plane: a dot product of three terms and an offset, a scaled step along the normal, and the final sum
+/// (gamma(8) at most). Tests of visibility round as much in proportion to the scene, which is within 1 of its
+/// middle: what starts or ends off the facet by this is on the right side of it for them too.
 double plane_error(const Facet& f, const Corners& corners) {
   const Vec3d n{f.normal[0], f.normal[1], f.normal[2]};
   double error = 0, size = std::abs(f.offset);
@@ -66,23 +67,7 @@ double plane_error(const Facet& f, const Corners& corners) {
     error = std::max(error, std::abs(dot(n, p) - f.offset));
     size = std::max(size, std::abs(p.x) + std::abs(p.y) + std::abs(p.z));
   }
-  return error + 9 * ulp * size;
-}
-
-/// As facets are hit up to `slack` beyond their edges, and visibility has a tolerance, a hit next to an edge
-/// could see what is behind the facet's neighbour: a closed room would leak. So hits keep this distance from
-/// edges, 1e-5 of the scene's size, unless the facet is as narrow as that.
-void set_shrink(Facet& f, const Corners& corners) {
-  Vec3d middle;
-  for (const Vec3d& p : corners) middle += p * (1 / static_cast<double>(corners.size()));
-  double inradius = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Vec3d from = corners[k], edge = corners[(k + 1) % corners.size()] - from;
-    inradius = std::min(inradius, length(cross(edge, middle - from)) / length(edge));
-  }
-  constexpr double distance = 0x1p-17, greatest = 0x1p-8;
-  for (int c = 0; c < 3; ++c) f.middle[c] = static_cast<float>(middle[c]);
-  f.shrink = static_cast<float>(std::min(distance / std::max(inradius, distance), greatest));
+  return error + 8 * ulp * (size + 2);
 }
 
 Facet make_facet(const Corners& corners, std::uint32_t material, std::uint32_t first, std::uint32_t second) {
@@ -104,7 +89,6 @@ Facet make_facet(const Corners& corners, std::uint32_t material, std::uint32_t f
     for (int c = 0; c < 3; ++c) f.corner[k][c] = static_cast<float>(a[c]);
   }
   f.error = static_cast<float>(plane_error(f, corners));
-  set_shrink(f, corners);
   f.material = material;
   f.triangle[0] = first;
   f.triangle[1] = second;

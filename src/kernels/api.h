@@ -17,8 +17,6 @@ struct Facet {
   float offset;     ///< normal . p of the plane's points
   float edge[4][3];
   float error;  ///< bound of the distance between a computed hit point and the exact facet
-  float middle[3];
-  float shrink;  ///< hit points are drawn to the middle by this part of their distance: into the facet
   uint32_t material;
   float corner[4][3];
   uint32_t triangle[2];  ///< of the scene; equal for a triangle

@@ -83,8 +83,7 @@ CASTRAY_INLINE HitPoint facet_point(const KernelScene& scene, const Vec& o, cons
   const Vec normal = gather_vec(facet.normal, record);
   const Vec on_ray = fma(d, t, o);
   const Float above = dot(normal, on_ray) - gather(&facet.offset, record);
-  const Vec p = fma(normal, -above, on_ray);
-  return {fma(gather_vec(facet.middle, record) - p, gather(&facet.shrink, record), p), normal, gather(&facet.error, record),
+  return {fma(normal, -above, on_ray), normal, gather(&facet.error, record),
           gather(&facet.material, record) * uint32_t{material_floats}};
 }
 

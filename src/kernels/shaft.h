@@ -43,8 +43,8 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
   const Float above = dot(normal, corner[0]);
   const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
                    flip_by_sign(normal.z, above)};
-  // more than the rounding of the dot products: what the box lies on does not hide it
-  const Float base = fma((sum_abs(center) + sum_abs(half)) * sum_abs(normal), Float(0x1p-21f), abs(above));
+  const Float base =
+      abs(above);  // the points in the box are off what they lie on by more than is rounded here
   Mask meets = lanes & (support(beyond, center, half) > base);
   Vec edge[4];
   Float margin[4];
