@@ -66,7 +66,7 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
             itself["points"][budget]["runs"][run]["relmse"]);
       CHECK(itself["points"][budget]["runs"][run]["seconds"] == 0.25);
     }
-    CHECK(plain["points"][budget]["process_seconds"] >= plain["points"][budget]["runs"][0]["seconds"]);
+    CHECK(plain["points"][budget]["process_seconds"] > 0);
   }
   CHECK(plain["points"][1]["relmse"] < plain["points"][0]["relmse"]);
   CHECK(itself["equal_time"]["spp"] == 1);

@@ -34,7 +34,7 @@ struct Renders {
 
 }  // namespace
 
-TEST_CASE("--ztest holds films and EXR files of replicates against each other in any pair") {
+TEST_CASE("the z-test holds films and EXR files of replicates against each other in any pair") {
   const Renders renders;
   for (const char* image : {"2.film", "2.exr"})
     for (const char* reference : {"1.film", "1.exr"}) {
@@ -58,7 +58,7 @@ TEST_CASE("--ztest holds films and EXR files of replicates against each other in
   CHECK_THAT(plain.err, Contains("1.pfm against 1.exr: the image does not tell its noise"));
 }
 
-TEST_CASE("--ztest takes PFM files with their variances beside them") {
+TEST_CASE("the z-test takes PFM files with their variances beside them") {
   const TemporaryFolder folder;
   Image image = test_image(16, 16), variance(16, 16);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) variance.pixels[i] = image.pixels[i] * 1e-4f;

@@ -236,7 +236,7 @@ TEST_CASE("a sample that is not finite is told with the command that renders it 
   }
 }
 
-TEST_CASE("--clamp-indirect is told to be biased in the log, the statistics and every output") {
+TEST_CASE("clamp-indirect is told to be biased in the log, the statistics and every output") {
   const TemporaryFolder folder;
   for (const bool clamps : {true, false}) {
     std::vector<std::string> arguments{"--spp", "1", "--stats", "s.json"};

@@ -42,11 +42,11 @@ void check_clamp(const RenderOptions& options) {
 
 }  // namespace
 
-TEST_CASE("--clamp-indirect bounds what the first bounce brings, on the reference") {
+TEST_CASE("clamp-indirect bounds what the first bounce brings, on the reference") {
   check_clamp(reference_options(48, 48, 1));
 }
 
-TEST_CASE("--clamp-indirect bounds what the first bounce brings, on the wavefront") {
+TEST_CASE("clamp-indirect bounds what the first bounce brings, on the wavefront") {
   RenderOptions options;
   SECTION("shared paths") {}
   SECTION("plain paths") { options.reuse = {.automatic = false}; }
