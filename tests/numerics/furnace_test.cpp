@@ -1,0 +1,72 @@
+#include <catch2/catch.hpp>
+
+#include "reference_images.h"
+#include "test_scenes.h"
+
+using namespace castray;
+using namespace castray::test;
+
+// A closed box that emits e and reflects k has radiance e / (1 - k), whatever the transport options.
+
+namespace {
+
+const Vec3d albedo{0.3, 0.5, 0.8};
+
+struct Named {
+  std::string name;
+  RenderOptions options;
+};
+
+/// Each list of options once with each of the changes.
+template <class Change>
+std::vector<Named> combined(const std::vector<Named>& list,
+                            const std::vector<std::pair<std::string, Change>>& changes) {
+  std::vector<Named> all;
+  for (const Named& named : list)
+    for (const auto& [what, change] : changes) {
+      all.push_back({named.name + ", " + what, named.options});
+      change(all.back().options);
+    }
+  return all;
+}
+
+std::vector<Named> transport_options() {
+  using Change = void (*)(RenderOptions&);
+  using Changes = std::vector<std::pair<std::string, Change>>;
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.spp = 16;
+  options.threads = 1;
+  std::vector<Named> all{{"furnace", options}};
+  all = combined(all, Changes{{"shared", [](RenderOptions&) {}},
+                              {"plain", [](RenderOptions& o) { o.reuse = {.automatic = false}; }},
+                              {"reference", [](RenderOptions& o) { o.integrator = Integrator::reference; }}});
+  all = combined(all, Changes{{"roulette auto", [](RenderOptions&) {}},
+                              {"roulette 0.7", [](RenderOptions& o) { o.rr = 0.7; }}});
+  all = combined(all, Changes{{"MIS", [](RenderOptions& o) { o.mis = Switch::on; }},
+                              {"no MIS", [](RenderOptions& o) { o.mis = Switch::off; }}});
+  all = combined(all, Changes{{"list", [](RenderOptions&) {}},
+                              {"tree", [](RenderOptions& o) { o.accel = AccelKind::bvh; }}});
+  return combined(all, Changes{{"Sobol'", [](RenderOptions&) {}}, {"independent", [](RenderOptions& o) {
+                                                                     o.sampler = SamplerKind::independent;
+                                                                   }}});
+}
+
+}  // namespace
+
+// 48 combinations of 3 channels: one false alarm in 100 seeds.
+TEST_CASE("the furnace closes with every transport option") {
+  Scene scene = standard_scene("furnace");
+  for (Material& material : scene.materials) material.kd = albedo;
+  const std::vector<double> expected{1 / (1 - albedo.x), 1 / (1 - albedo.y), 1 / (1 - albedo.z)};
+  for (const Named& named : transport_options()) {
+    std::vector<std::vector<double>> renders;
+    RenderOptions options = named.options;
+    for (options.seed = 1; options.seed <= 24; ++options.seed)
+      renders.push_back(block_means(render(scene, options).film.image(), options.width));
+    const BlockScores scores = block_scores(renders, expected, {0, 0, 0});
+    CAPTURE(named.name, scores.largest);
+    CHECK(scores.count == 3);
+    CHECK(scores.largest < 4);
+  }
+}
