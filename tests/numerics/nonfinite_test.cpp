@@ -89,7 +89,7 @@ TEST_CASE("no sample of the standard scenes is not finite, 4096 in each pixel", 
       const bool reference = way.options.integrator == Integrator::reference;
       if (!reference && way.options.isa != choose_kernel("auto").name) continue;
       RenderOptions options = way.options;
-      options.width = options.height = reference ? 24 : 96;
+      options.width = options.height = reference ? 24 : 64;
       options.spp = 4096;
       CAPTURE(name, way.name);
       CHECK(render(standard_scene(name), options).film.nonfinite_samples == 0);
