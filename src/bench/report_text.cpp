@@ -45,7 +45,7 @@ std::string fits_table(const BenchScene& scene) {
       text += fmt::format(" {:>9}", seconds_text(curve.fit->seconds_to(error)));
     if (const auto& equal = curve.equal_time)
       text += fmt::format("   {:{}}  {:>7} {:>9.3g} {:>10.3g} {:>7.4f}", "",
-                          fmt::formatted_size("at {:.3g} s", scene.equal_seconds) - 1, equal->spp,
+                          fmt::format("at {:.3g} s", scene.equal_seconds).size() - 1, equal->spp,
                           equal->seconds, equal->relmse, equal->flip);
     text += "\n";
   }
