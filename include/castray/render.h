@@ -40,9 +40,9 @@ struct Reuse {
 
 /// All that a render depends on besides the scene. Defaults are those of the command line.
 struct RenderOptions {
-  int width = 0, height = 0;   ///< full image; 0: the scene's
-  std::optional<Window> crop;  ///< only x0..y1 are read
-  std::uint64_t spp = 64;
+  int width = 0, height = 0;           ///< full image; 0: the scene's
+  std::optional<Window> crop;          ///< only x0..y1 are read
+  std::uint64_t spp = 64;              ///< samples per pixel; with a target error, the most
   std::optional<SampleRange> samples;  ///< only these sample indices; else 0 .. spp-1
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all that this process may use
@@ -65,10 +65,15 @@ struct RenderOptions {
   BuildQuality build = BuildQuality::automatic;
   bool generic = false;
   Reuse reuse;
-  std::optional<double> time_limit;    ///< seconds
-  std::optional<double> target_error;  ///< relMSE
+  std::optional<double> time_limit;  ///< seconds
+  /// relMSE, mean over pixels and channels of (x-r)^2 / (r^2 + 0.01), that the image shall have. A pilot,
+  /// whose samples are not in the image, tells how noisy each part of it is and so how many samples it gets.
+  std::optional<double> target_error;
   Fault fault = Fault::none;
 };
+
+/// A limit of `spp` for renders to a target error that is no limit in practice.
+inline constexpr std::uint64_t most_samples_to_target = std::uint64_t{1} << 16;
 
 /// Told to the caller while a render runs, at most some times a second, from one thread at a time.
 struct Progress {
@@ -100,6 +105,8 @@ struct RenderStats {
   std::uint64_t paths = 0;                 ///< camera samples
   std::uint64_t rays = 0;                  ///< closest-hit and shadow rays traced
   std::vector<NonfiniteSample> nonfinite;  ///< the first few
+  std::uint64_t pilot_paths = 0;           ///< of `paths`, those that only told the noise
+  std::optional<double> expected_error;    ///< relMSE of the film, with a target error
   Stopped stopped = Stopped::done;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 
@@ -65,10 +66,16 @@ void declare_flags(CLI::App& app, RenderCommand& command) {
   app.add_flag("-v", command.verbose, "say more")->group("Output");
 }
 
+bool is_given(const RenderCommand& command, std::string_view flag) {
+  return std::any_of(command.given.begin(), command.given.end(),
+                     [&](const GivenFlag& given) { return given.flag->name == flag; });
+}
+
 RenderRequest request_of(const RenderCommand& command, const Scene& scene) {
   RenderRequest request;
   apply_defaults(request, scene);
   for (const GivenFlag& given : command.given) given.flag->set(request, given.flag->name, given.value);
+  if (request.options.target_error && !is_given(command, "spp")) request.options.spp = most_samples_to_target;
   request.outputs.assign(command.outputs.begin(), command.outputs.end());
   if (request.outputs.empty()) request.outputs.push_back(scene.name + ".png");
   request.quiet = command.quiet;
@@ -84,6 +91,8 @@ void check(const RenderRequest& request) {
       (request.checkpoint || request.options.time_limit || request.options.target_error))
     throw InputError(
         "--replicates: cannot go with --checkpoint, --time-limit or --target-error; leave one out");
+  if (request.checkpoint && request.options.target_error)
+    throw InputError("--target-error: cannot go with --checkpoint; leave one out");
   for (const fs::path& output : request.outputs) check_output_image(output);
   if (request.checkpoint && !is_film_format(*request.checkpoint))
     throw InputError(request.checkpoint->string() + ": a checkpoint's name must end in .film");
@@ -124,9 +133,10 @@ void write_results(const RenderRequest& request, const RenderReport& report) {
   if (request.stats) write_file(*request.stats, report.json());
 }
 
-int exit_code(Stopped stopped) {
+int exit_code(const RenderRequest& request, Stopped stopped) {
   if (stopped == Stopped::interrupted) return 130;
-  return stopped == Stopped::time_limit ? 1 : 0;
+  const bool as_asked = stopped == (request.options.target_error ? Stopped::target_error : Stopped::done);
+  return as_asked ? 0 : 1;
 }
 
 int render_scene(const RenderCommand& command) {
@@ -146,7 +156,7 @@ int render_scene(const RenderCommand& command) {
   report.total_seconds = seconds_since(begin);
   report.print_nonfinite();
   if (!request.quiet) report.print_summary(request.outputs);
-  return exit_code(report.result.stats.stopped);
+  return exit_code(request, report.result.stats.stopped);
 }
 
 }  // namespace
@@ -155,9 +165,8 @@ Run add_render(CLI::App& app) {
   auto command = std::make_shared<RenderCommand>();
   declare_flags(app, *command);
   app.footer(
-      "Exit codes: 0 done; 1 stopped by --time-limit with samples missing; 2 error; 130 interrupted (what "
-      "was rendered "
-      "is saved).");
+      "Exit codes: 0 done; 1 stopped by --time-limit or, short of --target-error, by --spp; 2 error; 130 "
+      "interrupted (what was rendered is saved).");
   return [command] { return render_scene(*command); };
 }
 

@@ -186,7 +186,8 @@ const RenderFlag flags[] = {
 
     {"time-limit", "SECONDS", "stop rendering after this time; exit code 1 if samples are missing then",
      stopping, [](Request r, Text f, Text t) { r.options.time_limit = parse_number(f, t); }},
-    {"target-error", "E", "stop at this relMSE", stopping,
+    {"target-error", "E",
+     "render until the relMSE is about E, more samples where there is more noise; --spp: at most", stopping,
      [](Request r, Text f, Text t) { r.options.target_error = parse_number(f, t); }},
     {"checkpoint", "FILE", "keep the sums so far in this .film", stopping,
      [](Request r, Text, Text t) { r.checkpoint = t; }, false},

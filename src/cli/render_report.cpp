@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -81,40 +82,54 @@ void RenderReport::print_summary(const std::vector<std::filesystem::path>& outpu
       s.bvh_seconds, s.render_seconds, millions_per_second(s.paths, s.render_seconds),
       millions_per_second(s.rays, s.render_seconds), static_cast<double>(peak_memory_bytes()) / (1 << 20));
   for (const auto& output : outputs) fmt::print(stderr, "wrote {}\n", output.string());
-  if (s.stopped == Stopped::done)
+  if (s.expected_error) print_expected_error();
+  if (s.stopped == Stopped::done || s.stopped == Stopped::target_error)
     fmt::print(stderr, "Render complete\n");
   else
     fmt::print(stderr, "Render stopped early: {}; what was rendered is saved\n", name_of(s.stopped));
 }
 
+void RenderReport::print_expected_error() const {
+  const double target = *options.target_error;
+  const Stopped stopped = result.stats.stopped;
+  fmt::print(stderr, "relMSE about {:.2g}, ", *result.stats.expected_error);
+  if (stopped == Stopped::target_error)
+    fmt::print(stderr, "the target was {:.2g}\n", target);
+  else
+    fmt::print(stderr, "the target of {:.2g} was not reached{}\n", target,
+               stopped == Stopped::done ? "; raise --spp" : "");
+}
+
 std::string RenderReport::json() const {
   const RenderStats& s = result.stats;
-  const nlohmann::ordered_json object = {
-      {"version", CASTRAY_VERSION},
-      {"scene", scene.file.string()},
-      {"width", result.film.width()},
-      {"height", result.film.height()},
-      {"spp", spp()},
-      {"seed", options.seed},
-      {"threads", s.threads},
-      {"isa", s.isa},
-      {"kernel", s.kernel},
-      {"skipped", s.skipped},
-      {"accel", s.accel_summary},
-      {"triangles", scene.triangles.size()},
-      {"lights", scene.lights.size()},
-      {"load_seconds", load_seconds},
-      {"bvh_seconds", s.bvh_seconds},
-      {"render_seconds", s.render_seconds},
-      {"total_seconds", total_seconds},
-      {"paths", s.paths},
-      {"rays", s.rays},
-      {"mpaths_per_second", millions_per_second(s.paths, s.render_seconds)},
-      {"mrays_per_second", millions_per_second(s.rays, s.render_seconds)},
-      {"peak_memory_bytes", peak_memory_bytes()},
-      {"nonfinite_samples", result.film.nonfinite_samples},
-      {"biased", options.clamp_indirect.has_value()},
-      {"stopped", name_of(s.stopped)}};
+  nlohmann::ordered_json object = {{"version", CASTRAY_VERSION},
+                                   {"scene", scene.file.string()},
+                                   {"width", result.film.width()},
+                                   {"height", result.film.height()},
+                                   {"spp", spp()},
+                                   {"seed", options.seed},
+                                   {"threads", s.threads},
+                                   {"isa", s.isa},
+                                   {"kernel", s.kernel},
+                                   {"skipped", s.skipped},
+                                   {"accel", s.accel_summary},
+                                   {"triangles", scene.triangles.size()},
+                                   {"lights", scene.lights.size()},
+                                   {"load_seconds", load_seconds},
+                                   {"bvh_seconds", s.bvh_seconds},
+                                   {"render_seconds", s.render_seconds},
+                                   {"total_seconds", total_seconds},
+                                   {"paths", s.paths},
+                                   {"rays", s.rays},
+                                   {"mpaths_per_second", millions_per_second(s.paths, s.render_seconds)},
+                                   {"mrays_per_second", millions_per_second(s.rays, s.render_seconds)},
+                                   {"peak_memory_bytes", peak_memory_bytes()},
+                                   {"nonfinite_samples", result.film.nonfinite_samples},
+                                   {"biased", options.clamp_indirect.has_value()},
+                                   {"stopped", name_of(s.stopped)}};
+  if (options.target_error)
+    object["target_error"] = *options.target_error, object["pilot_paths"] = s.pilot_paths;
+  if (s.expected_error) object["expected_error"] = *s.expected_error;
   return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -128,12 +143,19 @@ Metadata RenderReport::metadata() const {
   return metadata;
 }
 
-std::uint64_t RenderReport::spp() const { return options.samples ? options.samples->count : options.spp; }
+std::uint64_t RenderReport::spp() const {
+  const Film& film = result.film;
+  if (!options.target_error) return options.samples ? options.samples->count : options.spp;
+  double samples = 0;
+  for (int y = film.window().y0; y < film.window().y1; ++y)
+    for (int x = film.window().x0; x < film.window().x1; ++x) samples += film.count(x, y);
+  return std::uint64_t(std::llround(samples / (static_cast<double>(film.width()) * film.height())));
+}
 
 std::string RenderReport::replay(const NonfiniteSample& sample) const {
   static const std::set<std::string> not_repeated = {
-      "spp",   "samples",          "crop",   "threads",    "checkpoint",
-      "stats", "checkpoint-every", "resume", "time-limit", "progress"};
+      "spp",    "samples",    "crop",         "threads", "checkpoint", "stats", "checkpoint-every",
+      "resume", "time-limit", "target-error", "progress"};
   std::string command = "castray render " + shell_word(scene.file.string());
   for (const GivenFlag& g : given) {
     if (not_repeated.contains(g.flag->name)) continue;

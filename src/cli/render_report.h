@@ -34,7 +34,8 @@ struct RenderReport {
   Metadata metadata() const;
 
  private:
-  std::uint64_t spp() const;
+  void print_expected_error() const;
+  std::uint64_t spp() const;  ///< on average, with a target error
   /// The command that renders one sample again, alone.
   std::string replay(const NonfiniteSample& sample) const;
 };

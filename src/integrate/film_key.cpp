@@ -101,6 +101,7 @@ std::string film_key(const Scene& scene, const RenderOptions& o) {
   add("reuse",
       o.reuse.automatic ? "auto" : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
   if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
+  if (o.target_error) add("target-error", *o.target_error);
   if (o.fault != Fault::none) add("fault", static_cast<int>(o.fault));
   return key;
 }

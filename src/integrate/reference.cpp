@@ -8,7 +8,7 @@
 #include "accel/list.h"
 #include "integrate/cast_ray.h"
 #include "integrate/flat_slab_list.h"
-#include "integrate/row_loop.h"
+#include "integrate/take_samples.h"
 
 namespace castray {
 
@@ -43,13 +43,14 @@ RenderResult trace(const Scene& scene, const Accel& accel, const RenderOptions& 
                    const ProgressCallback& progress, const Film* start) {
   const CastRay<T, Accel> tracer(scene, accel, options);
   SharedCounter counter;
-  const auto render_rows = [&](int y0, int y1, const SampleRange& samples, Film& film, RowStats& stats) {
+  const auto render_rows = [&](int y0, int y1, const SampleRange& samples, const SampleMap& map, Film& film,
+                               RowStats& stats) {
     const Window& w = film.window();
     for (int y = y0; y < y1; ++y)
       for (int x = w.x0; x < w.x1; ++x) {
         NonfiniteSample at{x, y};
         if (options.fault == Fault::shared_counter) at = counter.place(w);
-        for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
+        for (std::uint64_t s = samples.first; s < samples.first + samples.count && map.wants(x, y, s); ++s) {
           Vec3f radiance(tracer.sample_pixel(x, y, w.full_width, w.full_height, s, stats.rays));
           if (!is_finite(radiance)) {
             if (options.fault != Fault::white_specks) {
@@ -63,7 +64,7 @@ RenderResult trace(const Scene& scene, const Accel& accel, const RenderOptions& 
         }
       }
   };
-  return run_rows(scene, options, progress, start, {.render = render_rows});
+  return take_samples(scene, options, progress, start, {.render = render_rows});
 }
 
 template <class T>

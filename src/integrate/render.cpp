@@ -51,6 +51,15 @@ void check_numbers(const RenderOptions& o) {
   positive("epsilon", o.epsilon);
   positive("clamp-indirect", o.clamp_indirect);
   positive("time-limit", o.time_limit);
+  positive("target-error", o.target_error);
+}
+
+/// A target error decides how many samples there are, and which.
+void check_target(const RenderOptions& o, const Film* start) {
+  if (!o.target_error) return;
+  require(!o.samples, "--target-error: cannot go with --samples; leave one out");
+  require(o.fault == Fault::none, "--target-error: cannot go with --fault; give --spp");
+  require(!start, "--target-error: cannot go on from an earlier film; leave out the target or the film");
 }
 
 /// What castRay does not have is refused, never ignored.
@@ -61,8 +70,6 @@ void check_reference(const RenderOptions& o) {
           "--reuse: the reference integrator shares no paths; leave it at auto or off");
   require(o.isa == "auto" || o.isa == "scalar",
           fmt::format("--isa {}: the reference integrator has no vector kernels; leave it at auto", o.isa));
-  require(!o.target_error,
-          "--target-error: not available with the reference integrator; give --spp or --time-limit");
 }
 
 void check_wavefront(const RenderOptions& o) {
@@ -75,7 +82,6 @@ void check_wavefront(const RenderOptions& o) {
                (r.suffixes & (r.suffixes - 1)) == 0),
           fmt::format("--reuse {}x{}:{}: tiles are 8x8, with a power of two of suffixes up to 64", r.width,
                       r.height, r.suffixes));
-  require(!o.target_error, "--target-error: not available yet; give --spp or --time-limit");
 }
 
 }  // namespace
@@ -85,6 +91,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options, const Prog
   check_image(window_of(scene, options));
   check_samples(samples_of(options));
   check_numbers(options);
+  check_target(options, start);
   require(!scene.triangles.empty(), fmt::format("{}: the scene has no triangle", scene.file.string()));
   // the classic epsilon lives in the reference alone
   if (options.integrator == Integrator::wavefront && !options.epsilon) {

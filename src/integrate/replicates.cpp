@@ -2,6 +2,7 @@
 
 #include "castray/error.h"
 #include "castray/render.h"
+#include "integrate/row_loop.h"
 
 namespace castray {
 
@@ -13,17 +14,6 @@ SampleRange first_range(const RenderOptions& options, std::uint64_t replicates) 
     throw InputError(
         fmt::format("--spp {}: must be a multiple of the {} replicates", options.spp, replicates));
   return {0, options.spp / replicates};
-}
-
-/// Adds the counts and seconds of one replicate's render.
-void add_stats(RenderStats& sum, const RenderStats& part) {
-  const RenderStats before = sum;
-  sum = part;
-  sum.bvh_seconds += before.bvh_seconds;
-  sum.render_seconds += before.render_seconds;
-  sum.paths += before.paths;
-  sum.rays += before.rays;
-  sum.nonfinite.insert(sum.nonfinite.begin(), before.nonfinite.begin(), before.nonfinite.end());
 }
 
 }  // namespace
@@ -42,7 +32,8 @@ RenderResult render_replicates(const Scene& scene, const RenderOptions& options,
       return !progress || progress({fraction, whole.stats.paths + p.paths, nullptr});
     });
     part.film.keep_replicates();
-    add_stats(whole.stats, part.stats);
+    add_stats(part.stats, whole.stats);
+    whole.stats = part.stats;
     if (r == 0)
       whole.film = std::move(part.film);
     else if (part.stats.stopped == Stopped::done)

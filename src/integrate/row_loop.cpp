@@ -60,11 +60,12 @@ double brightest_emission(const Scene& scene) {
 class RowLoop {
  public:
   RowLoop(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-          const Film* start)
+          const Film* start, const SampleMap& map)
       : options_(options),
         progress_(progress),
+        map_(map),
         window_(window_of(scene, options)),
-        samples_(samples_of(options)),
+        samples_(map.range()),
         ends_(pass_ends(samples_.count, static_cast<std::uint64_t>(window_.width()) *
                                             static_cast<std::uint64_t>(window_.height()))) {
     result_.film = Film(window_, brightest_emission(scene));
@@ -72,7 +73,8 @@ class RowLoop {
     finished_.resize(static_cast<std::size_t>(window_.height()));
     if (start) resume(*start);
     result_.stats.threads = thread_count(options);
-    for (const std::uint64_t samples : finished_) paths_ += samples * width();
+    for (int y = window_.y0; y < window_.y1; ++y)
+      paths_ += map_.total(y, y + 1, {samples_.first, *row_of(y)});
     paths_before_ = paths_;
   }
 
@@ -89,13 +91,11 @@ class RowLoop {
     stats.paths = paths_ - paths_before_;
     stats.rays = totals_.rays;
     stats.nonfinite = totals_.nonfinite;
-    const std::uint64_t all = samples_.count * static_cast<std::uint64_t>(window_.height()) * width();
-    stats.stopped = paths_ == all ? Stopped::done : reason_;
+    stats.stopped = paths_ == all_ ? Stopped::done : reason_;
     return std::move(result_);
   }
 
  private:
-  std::uint64_t width() const { return static_cast<std::uint64_t>(window_.width()); }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
   void resume(const Film& start) {
@@ -121,9 +121,10 @@ class RowLoop {
       const std::uint64_t done = work.overlap ? begin : finished_[static_cast<std::size_t>(y0 - window_.y0)];
       if (done >= end || (stopped_ && !work.overlap)) continue;
       RowStats stats;
-      work.render(y0, y1, {samples_.first + done, end - done}, result_.film, stats);
+      const SampleRange samples{samples_.first + done, end - done};
+      work.render(y0, y1, samples, map_, result_.film, stats);
       if (!work.overlap) std::fill(row_of(y0), row_of(y1), end);
-      if (y1 > y0) paths_ += (end - done) * width() * static_cast<std::uint64_t>(y1 - y0);
+      paths_ += map_.total(y0, y1, samples);
       add(stats);
       report(nullptr);
     }
@@ -153,10 +154,9 @@ class RowLoop {
     if (options_.time_limit && now >= *options_.time_limit) stop(Stopped::time_limit);
     if (!progress_ || (!film && now < last_report_ + seconds_between_reports)) return;
     last_report_ = now;
-    const double all = static_cast<double>(samples_.count) * window_.width() * window_.height();
     const std::uint64_t paths = paths_;
-    if (!progress_(
-            {.fraction = static_cast<double>(paths) / all, .paths = paths - paths_before_, .film = film}))
+    const double fraction = static_cast<double>(paths) / static_cast<double>(all_);
+    if (!progress_({.fraction = fraction, .paths = paths - paths_before_, .film = film}))
       stop(Stopped::interrupted);
   }
 
@@ -174,8 +174,10 @@ class RowLoop {
 
   const RenderOptions& options_;
   const ProgressCallback& progress_;
+  const SampleMap& map_;
   Window window_;
   SampleRange samples_;
+  std::uint64_t all_ = map_.total();  ///< paths
   std::vector<std::uint64_t> ends_;
   RenderResult result_;
   std::vector<std::uint64_t> finished_;  ///< samples of each row, counted from the first
@@ -211,8 +213,16 @@ SampleRange samples_of(const RenderOptions& options) {
 }
 
 RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-                      const Film* start, const BandWork& work) {
-  return RowLoop(scene, options, progress, start).run(work);
+                      const Film* start, const SampleMap& map, const BandWork& work) {
+  return RowLoop(scene, options, progress, start, map).run(work);
+}
+
+void add_stats(RenderStats& sum, const RenderStats& earlier) {
+  sum.bvh_seconds += earlier.bvh_seconds;
+  sum.render_seconds += earlier.render_seconds;
+  sum.paths += earlier.paths;
+  sum.rays += earlier.rays;
+  sum.nonfinite.insert(sum.nonfinite.begin(), earlier.nonfinite.begin(), earlier.nonfinite.end());
 }
 
 }  // namespace castray

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "castray/render.h"
+#include "integrate/sample_map.h"
 
 namespace castray {
 
@@ -20,20 +21,26 @@ struct BandWork {
   /// Bands may add to rows of their neighbours: they see to it that no two threads add to one pixel at a
   /// time, there is one band more than fit the window, and a stop waits for the end of the pass.
   bool overlap = false;
-  /// Adds the samples of the band that starts at row y0 of the full image to the film. Called by several
-  /// threads at a time, for different bands.
-  std::function<void(int y0, int y1, const SampleRange& samples, Film& film, RowStats& stats)> render;
+  /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
+  /// image. Called by several threads at a time, for different bands.
+  std::function<void(int y0, int y1, const SampleRange& samples, const SampleMap& map, Film& film,
+                     RowStats& stats)>
+      render;
 };
 
-/// The loop around every integrator: passes over the image, each for some of the samples; in a pass OpenMP
-/// hands out bands of rows dynamically, and nothing is shared but the band counter. Tells
-/// `progress`, stops at its wish or at the time limit, and fills in all of the stats that it knows.
+/// The loop around every integrator, which renders the samples that `map` wants: passes over the image, each
+/// for some of the samples; in a pass OpenMP hands out bands of rows dynamically, and nothing is shared but
+/// the band counter. Tells `progress`, stops at its wish or at the time limit, and fills in all of the stats
+/// that it knows.
 ///
 /// As film sums are exact, the passes do not show in the result. They make an early stop leave a whole image
 /// and a checkpoint possible: between passes no row is in work. `start`, if not null, is the film of an
 /// earlier run of the same render, whose samples are not rendered again.
 RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-                      const Film* start, const BandWork& work);
+                      const Film* start, const SampleMap& map, const BandWork& work);
+
+/// Adds the counts, the seconds and the first samples that were not finite of an earlier loop.
+void add_stats(RenderStats& sum, const RenderStats& earlier);
 
 /// The window that is rendered: the crop, or all of the image.
 Window window_of(const Scene& scene, const RenderOptions& options);

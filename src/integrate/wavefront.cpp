@@ -13,7 +13,7 @@
 #include "accel/build_quality.h"
 #include "core/sequences.h"
 #include "integrate/kernel_scene.h"
-#include "integrate/row_loop.h"
+#include "integrate/take_samples.h"
 
 namespace castray {
 
@@ -84,8 +84,17 @@ struct TileGrid {
     y1 = tile_of(window.y1 - 1 + shift_y + more) + 1;
   }
 
-  TileJob job(int x, int y, std::uint64_t sample) const {
-    return {x * tile_size - shift_x, y * tile_size - shift_y, x, y, std::min(max_tiles, x1 - x), sample};
+  /// The first tiles of row y, from x on, of which pixels want the sample: none, if the tile at x has none.
+  TileJob job(int x, int y, std::uint64_t sample, const SampleMap& map) const {
+    const int left = x * tile_size - shift_x, top = y * tile_size - shift_y;
+    constexpr int reach = ragged_reach;
+    const auto wanted = [&](int tile) {
+      const int at = left + tile * tile_size;
+      return map.wants_any(at - reach, top - reach, at + tile_size + reach, top + tile_size + reach, sample);
+    };
+    int tiles = 0;
+    while (tiles < std::min(max_tiles, x1 - x) && wanted(tiles)) ++tiles;
+    return {left, top, x, y, tiles, sample};
   }
 };
 
@@ -109,16 +118,18 @@ class Wavefront {
 
   /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
   /// bands.
-  void render_band(int row, const SampleRange& samples, Film& film, RowStats& stats) {
+  void render_band(int row, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
     Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
     TileResult result = workplace.result();
     for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
       const TileGrid grid(window_, options_, s);
       for (int y = grid.y0 + row; y < grid.y1; y += bands_)
-        for (int x = grid.x0; x < grid.x1; x += max_tiles) {
-          const TileJob job = grid.job(x, y, s);
+        for (int x = grid.x0; x < grid.x1;) {
+          const TileJob job = grid.job(x, y, s, map);
+          x += std::max(job.tiles, 1);
+          if (job.tiles == 0) continue;
           render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
-          add(job, result, film, stats);
+          add(job, result, map, film, stats);
         }
     }
     stats.rays += result.rays;
@@ -154,9 +165,9 @@ class Wavefront {
     table.known = true;
   }
 
-  /// Adds a job's samples to the film where they lie in its window, under the locks of the rows they share
-  /// with other jobs.
-  void add(const TileJob& job, const TileResult& result, Film& film, RowStats& stats) {
+  /// Adds a job's samples to the film where they lie in its window and are wanted, under the locks of the
+  /// rows they share with other jobs.
+  void add(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film, RowStats& stats) {
     const int count = job.tiles * tile_pixels;
     const auto lock_of = [&](int y) { return (y - window_.y0) / tile_size; };
     const int first = std::max(job.y - ragged_reach, window_.y0);
@@ -167,6 +178,7 @@ class Wavefront {
         const auto x = static_cast<int>(result.x[i]), y = static_cast<int>(result.y[i]);
         if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || lock_of(y) != l)
           continue;
+        if (!map.wants(x, y, job.sample)) continue;
         const Vec3f radiance{result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
         if (is_finite(radiance))
           film.add(x, y, radiance);
@@ -202,11 +214,12 @@ RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
   const Plan plan = make_plan(scene, options);
   Wavefront wavefront(scene, options, plan);
   const Window window = window_of(scene, options);
-  const BandWork work{tile_size, true,
-                      [&](int y0, int, const SampleRange& samples, Film& film, RowStats& stats) {
-                        wavefront.render_band((y0 - window.y0) / tile_size, samples, film, stats);
-                      }};
-  RenderResult result = run_rows(scene, options, progress, start, work);
+  const BandWork work{
+      tile_size, true,
+      [&](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
+        wavefront.render_band((y0 - window.y0) / tile_size, samples, map, film, stats);
+      }};
+  RenderResult result = take_samples(scene, options, progress, start, work);
   result.stats.isa = wavefront.kernel().name;
   result.stats.kernel = plan.kernel;
   result.stats.skipped = plan.skipped;

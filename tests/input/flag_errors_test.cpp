@@ -50,6 +50,13 @@ const std::vector<Case> cases = {
     render({"--clamp-indirect", "0"}, "--clamp-indirect 0: must be a number above 0"),
     render({"--clamp-indirect", "inf"}, "--clamp-indirect 'inf': must be a number"),
     render({"--time-limit", "-1"}, "--time-limit -1: must be a number above 0"),
+    render({"--target-error", "0"}, "--target-error 0: must be a number above 0"),
+    render({"--target-error", "1e-3", "--samples", "0:4"},
+           "--target-error: cannot go with --samples; leave one out"),
+    render({"--target-error", "1e-3", "--checkpoint", "x.film"},
+           "--target-error: cannot go with --checkpoint; leave one out"),
+    render({"--target-error", "1e-3", "--replicates", "4"},
+           "--replicates: cannot go with --checkpoint, --time-limit or --target-error; leave one out"),
     render({"--exposure", "bright"}, "--exposure 'bright': must be a number"),
     // Sizes and windows
     render({"--size", "640"}, "--size '640': must be WIDTHxHEIGHT, as in 640x480"),

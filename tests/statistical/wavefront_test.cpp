@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "generate/shapes.h"
 #include "integrate/wavefront.h"
 #include "reference_images.h"
 #include "test_scenes.h"
@@ -49,7 +50,10 @@ struct Expected {
     options.sampler = SamplerKind::independent;
     options.reuse.automatic = true;
     options.isa = "auto";
-    const Blocks renders = blocks_of(scene, options, seeds);
+    *this = Expected(blocks_of(scene, options, seeds));
+  }
+
+  explicit Expected(const Blocks& renders) {
     for (std::size_t i = 0; i < renders[0].size(); ++i) {
       Mean m;
       for (const auto& r : renders) m.add(r[i]);
@@ -94,6 +98,20 @@ Scene with_detail(Scene scene) {
     const Vec3f n = normalize(cross(v1 - v0, v2 - v0)), tilt = normalize(v1 - v0) * 0.3f;
     scene.normals.insert(scene.normals.end(), {normalize(n + tilt), n, normalize(n - tilt)});
     scene.triangle_normals.push_back({first, first + 1, first + 2});
+  }
+  return scene;
+}
+
+/// Cornell's box with a hollowed ball of 5120 triangles below the light.
+Scene box_with_mesh() {
+  Scene scene = standard_scene("cornell_box");
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  const Shape ball = blob(16, 1);
+  for (const Vec3d& p : ball.positions)
+    scene.positions.push_back(Vec3f(scene.to_scene(p * 100 + Vec3d(278, 400, 280))));
+  for (const Index3& t : ball.triangles) {
+    scene.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    scene.triangle_material.push_back(0);
   }
   return scene;
 }
@@ -260,5 +278,29 @@ TEST_CASE("a shared render has no bias that many seeds would show", "[statistica
   for (const char* name : {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights"}) {
     const Scene scene = standard_scene(name);
     Expected(scene, wavefront_options(256), 64).check(name, scene, wavefront_options(16), 512);
+  }
+}
+
+TEST_CASE("shared and plain renders have one mean in every 16x16 block, over many seeds",
+          "[statistical][long]") {
+  constexpr std::uint64_t seeds = 256;
+  const std::pair<const char*, Scene> scenes[] = {{"cornell_box", standard_scene("cornell_box")},
+                                                  {"cornell_conductor", standard_scene("cornell_conductor")},
+                                                  {"mesh", box_with_mesh()}};
+  for (const auto& [name, scene] : scenes) {
+    const auto renders_of = [&scene = scene](RenderOptions options) {
+      options.width = options.height = 128;
+      Blocks renders;
+      for (std::uint64_t seed = 0; seed < seeds; ++seed, ++options.seed)
+        renders.push_back(block_means(render(scene, options).film.image(), 16));
+      return renders;
+    };
+    const Expected expected(renders_of(plain(wavefront_options(32, 1))));
+    const BlockScores scores =
+        block_scores(renders_of(wavefront_options(16, 1 + seeds)), expected.mean, expected.variance);
+    CAPTURE(name, scores.rms, scores.largest, scores.count);
+    CHECK(scores.largest < 4);  // of 192 scores, a false alarm for one scene of 80
+    CHECK(scores.rms < 1.25);   // 1 has a standard error of 0.05
+    CHECK(scores.rms > 0.75);
   }
 }

@@ -1,0 +1,92 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "reference_images.h"
+#include "test_scenes.h"
+
+using namespace castray;
+using namespace castray::test;
+
+// --target-error: what it promises and what it reaches.
+
+namespace {
+
+RenderOptions options_of(int side, std::uint64_t spp, std::uint64_t seed) {
+  RenderOptions options;
+  options.width = options.height = side;
+  options.spp = spp;
+  options.seed = seed;
+  options.threads = 1;
+  return options;
+}
+
+RenderOptions plain(RenderOptions options) {
+  options.reuse = {.automatic = false};
+  return options;
+}
+
+RenderOptions to_target(RenderOptions options, double target) {
+  options.target_error = target;
+  options.spp = most_samples_to_target;
+  return options;
+}
+
+Image image_of(const Scene& scene, const RenderOptions& options) {
+  return render(scene, options).film.image();
+}
+
+std::vector<std::vector<double>> renders_of(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
+  std::vector<std::vector<double>> renders;
+  for (std::uint64_t i = 0; i < seeds; ++i, ++options.seed)
+    renders.push_back(block_means(image_of(scene, options), 8));
+  return renders;
+}
+
+}  // namespace
+
+TEST_CASE("the error that a target asks for is about the error that is got", "[statistical]") {
+  struct Case {
+    const char* scene;
+    bool shared;
+    double target;
+  };
+  for (const Case& c : {Case{"cornell_box", true, 1e-3}, Case{"cornell_box", false, 1e-2},
+                        Case{"cornell_conductor", true, 2e-3}, Case{"cornell_conductor", false, 3e-2},
+                        Case{"cornell_lights", true, 5e-3}}) {
+    const Scene scene = standard_scene(c.scene);
+    const ReferencePair reference(c.scene);
+    Mean got;
+    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+      const RenderOptions options = to_target(options_of(128, 1, seed), c.target);
+      const RenderResult result = render(scene, c.shared ? options : plain(options));
+      REQUIRE(result.stats.stopped == Stopped::target_error);
+      REQUIRE(result.stats.expected_error.value() <= c.target);
+      got.add(reference.relmse(result.film.image()));
+    }
+    CAPTURE(c.scene, c.shared, c.target, got.mean(), got.error());
+    CHECK(got.mean() > c.target / 4);  // edges of emitters look worse to a short pilot than they are
+    CHECK(got.mean() < c.target * 1.5);
+  }
+}
+
+// Plain paths on metal are where samples that look at themselves would lose light: rare bright samples.
+TEST_CASE("a render to a target error has the mean of a plain one", "[statistical]") {
+  for (const char* name : {"cornell_conductor", "cornell_box"}) {
+    const Scene scene = standard_scene(name);
+    const auto expected = renders_of(scene, options_of(64, 64, 5000), 32);
+    std::vector<double> mean, variance;
+    for (std::size_t i = 0; i < expected[0].size(); ++i) {
+      Mean m;
+      for (const auto& r : expected) m.add(r[i]);
+      mean.push_back(m.mean());
+      variance.push_back(m.error() * m.error());
+    }
+    const double target = 0.1;
+    const BlockScores scores =
+        block_scores(renders_of(scene, to_target(plain(options_of(64, 1, 1)), target), 200), mean, variance);
+    CAPTURE(name, scores.rms, scores.largest, scores.count);
+    CHECK(scores.largest < score_limit(scores.count, 1e-4));  // the rate of false alarms
+    CHECK(scores.rms < 1.25);                                 // 192 scores: 1 has a standard error of 0.05
+  }
+}
