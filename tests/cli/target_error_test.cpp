@@ -29,7 +29,7 @@ Outcome render_to(const TemporaryFolder& folder, const std::vector<std::string>&
 
 }  // namespace
 
-TEST_CASE("--target-error stops where it is reached, and says so") {
+TEST_CASE("a render stops where its target error is reached, and says so") {
   const TemporaryFolder folder;
   const Outcome o = render_to(folder, {"--target-error", "1e-3", "-o", "x.png"});
   CHECK(o.run.exit_code == 0);
