@@ -38,8 +38,7 @@ constexpr SobolMatrices make_matrices() {
 }
 
 constexpr std::uint32_t reverse_bits(std::uint32_t v) {
-  v = (v >> 16) | (v << 16);
-  v = ((v & 0xff00ff00u) >> 8) | ((v & 0x00ff00ffu) << 8);
+  v = __builtin_bswap32(v);
   v = ((v & 0xf0f0f0f0u) >> 4) | ((v & 0x0f0f0f0fu) << 4);
   v = ((v & 0xccccccccu) >> 2) | ((v & 0x33333333u) << 2);
   return ((v & 0xaaaaaaaau) >> 1) | ((v & 0x55555555u) << 1);
