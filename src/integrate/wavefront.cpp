@@ -54,7 +54,7 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   k.suffixes = plan.suffixes;
   k.light_points = plan.light_points;
   // from then on so many grids lie over each other that none can be told
-  constexpr std::uint64_t few_samples = 8;
+  constexpr std::uint64_t few_samples = 4;
   k.ragged = plan.suffixes > 0 ? few_samples : 0;
   k.seed =
       hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
