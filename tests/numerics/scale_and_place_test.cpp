@@ -86,17 +86,11 @@ namespace {
 
 /// One false alarm in 1000 runs of all placements.
 void check_brightness(const std::vector<Placement>& places, Integrator integrator) {
-  const auto untouched = renders(cornell_at({}), integrator, 1);
-  std::vector<double> expected, variance;
-  for (std::size_t i = 0; i < untouched[0].size(); ++i) {
-    Mean mean;
-    for (const auto& image : untouched) mean.add(image[i]);
-    expected.push_back(mean.mean());
-    variance.push_back(mean.error() * mean.error());
-  }
+  const ExpectedBlocks expected(renders(cornell_at({}), integrator, 1));
   for (const Placement& place : places) {
     INFO("scale " << place.scale << ", offset " << place.offset);
-    const BlockScores scores = block_scores(renders(cornell_at(place), integrator, 100), expected, variance);
+    const BlockScores scores =
+        block_scores(renders(cornell_at(place), integrator, 100), expected.mean, expected.variance);
     CHECK(scores.count > 150);
     CHECK(scores.largest < score_limit(scores.count, 1e-3 / static_cast<double>(places.size())));
   }

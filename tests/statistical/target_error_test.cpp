@@ -12,20 +12,6 @@ using namespace castray::test;
 
 namespace {
 
-RenderOptions options_of(int side, std::uint64_t spp, std::uint64_t seed) {
-  RenderOptions options;
-  options.width = options.height = side;
-  options.spp = spp;
-  options.seed = seed;
-  options.threads = 1;
-  return options;
-}
-
-RenderOptions plain(RenderOptions options) {
-  options.reuse = {.automatic = false};
-  return options;
-}
-
 RenderOptions to_target(RenderOptions options, double target) {
   options.target_error = target;
   options.spp = most_samples_to_target;
@@ -58,7 +44,7 @@ TEST_CASE("the error that a target asks for is about the error that is got", "[s
     const ReferencePair reference(c.scene);
     Mean got;
     for (std::uint64_t seed = 0; seed < 2; ++seed) {
-      const RenderOptions options = to_target(options_of(128, 1, seed), c.target);
+      const RenderOptions options = to_target(wavefront_options(128, 1, seed), c.target);
       const RenderResult result = render(scene, c.shared ? options : plain(options));
       REQUIRE(result.stats.stopped == Stopped::target_error);
       REQUIRE(result.stats.expected_error.value() <= c.target);
@@ -74,17 +60,11 @@ TEST_CASE("the error that a target asks for is about the error that is got", "[s
 TEST_CASE("a render to a target error has the mean of a plain one", "[statistical]") {
   for (const char* name : {"cornell_conductor", "cornell_box"}) {
     const Scene scene = standard_scene(name);
-    const auto expected = renders_of(scene, options_of(64, 64, 5000), 32);
-    std::vector<double> mean, variance;
-    for (std::size_t i = 0; i < expected[0].size(); ++i) {
-      Mean m;
-      for (const auto& r : expected) m.add(r[i]);
-      mean.push_back(m.mean());
-      variance.push_back(m.error() * m.error());
-    }
+    const ExpectedBlocks expected(renders_of(scene, wavefront_options(64, 64, 5000), 32));
     const double target = 0.1;
     const BlockScores scores =
-        block_scores(renders_of(scene, to_target(plain(options_of(64, 1, 1)), target), 200), mean, variance);
+        block_scores(renders_of(scene, to_target(plain(wavefront_options(64, 1, 1)), target), 200),
+                     expected.mean, expected.variance);
     CAPTURE(name, scores.rms, scores.largest, scores.count);
     CHECK(scores.largest < score_limit(scores.count, 1e-4));  // the rate of false alarms
     CHECK(scores.rms < 1.25);                                 // 192 scores: 1 has a standard error of 0.05

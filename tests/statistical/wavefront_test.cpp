@@ -17,12 +17,7 @@ namespace {
 constexpr int side = 32, block = 4;
 
 RenderOptions wavefront_options(std::uint64_t spp, std::uint64_t seed = 1) {
-  RenderOptions options;
-  options.width = options.height = side;
-  options.spp = spp;
-  options.seed = seed;
-  options.threads = 1;
-  return options;
+  return test::wavefront_options(side, spp, seed);
 }
 
 using Blocks = std::vector<std::vector<double>>;
@@ -39,28 +34,22 @@ Blocks blocks_of(const Scene& scene, RenderOptions options, std::uint64_t seeds)
   return blocks;
 }
 
+RenderOptions as_reference(RenderOptions options) {
+  options.integrator = Integrator::reference;
+  options.precision = Precision::float64;
+  options.sampler = SamplerKind::independent;
+  options.reuse.automatic = true;
+  options.isa = "auto";
+  return options;
+}
+
 /// What castRay makes of a scene, with the variance of its mean.
-struct Expected {
-  std::vector<double> mean, variance;
+struct Expected : ExpectedBlocks {
+  using ExpectedBlocks::ExpectedBlocks;
 
-  explicit Expected(const Scene& scene, RenderOptions options = wavefront_options(16),
-                    std::uint64_t seeds = 24) {
-    options.integrator = Integrator::reference;
-    options.precision = Precision::float64;
-    options.sampler = SamplerKind::independent;
-    options.reuse.automatic = true;
-    options.isa = "auto";
-    *this = Expected(blocks_of(scene, options, seeds));
-  }
-
-  explicit Expected(const Blocks& renders) {
-    for (std::size_t i = 0; i < renders[0].size(); ++i) {
-      Mean m;
-      for (const auto& r : renders) m.add(r[i]);
-      mean.push_back(m.mean());
-      variance.push_back(m.error() * m.error());
-    }
-  }
+  explicit Expected(const Scene& scene, const RenderOptions& options = wavefront_options(16),
+                    std::uint64_t seeds = 24)
+      : ExpectedBlocks(blocks_of(scene, as_reference(options), seeds)) {}
 
   /// No block is off, at a false-alarm rate of 1e-4 a call, nor are all of them a little: 192 scores, of
   /// which the root mean square has a standard error of 0.05.
@@ -72,11 +61,6 @@ struct Expected {
     CHECK(scores.rms < 1.25);
   }
 };
-
-RenderOptions plain(RenderOptions options) {
-  options.reuse = {.automatic = false};
-  return options;
-}
 
 /// Cornell's box with another material on its boxes.
 Scene box_with(const std::function<void(Material&)>& change) {

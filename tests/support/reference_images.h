@@ -51,6 +51,20 @@ struct BlockScores {
   std::size_t count = 0;
 };
 
+/// Block by block, the mean of some renders and the variance of that mean.
+struct ExpectedBlocks {
+  std::vector<double> mean, variance;
+
+  explicit ExpectedBlocks(const std::vector<std::vector<double>>& renders) {
+    for (std::size_t i = 0; i < renders[0].size(); ++i) {
+      Mean m;
+      for (const auto& render : renders) m.add(render[i]);
+      mean.push_back(m.mean());
+      variance.push_back(m.error() * m.error());
+    }
+  }
+};
+
 /// `variance`: of `expected` itself. A score follows Student's t; it is turned into a normal one of the same
 /// probability (Wallace 1959). Blocks without any variance are left out.
 inline BlockScores block_scores(const std::vector<std::vector<double>>& renders,

@@ -74,8 +74,8 @@ inline RunResult run_castray(const std::vector<std::string>& arguments, const Ru
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), file_content(out), file_content(err),
-          usage.ru_maxrss};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), file_content(out),
+          file_content(err), usage.ru_maxrss};
 }
 
 /// The same, in `folder`.

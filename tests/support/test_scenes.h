@@ -59,6 +59,22 @@ class SceneSketch {
   }
 };
 
+/// The default integrator on one thread, a square image.
+inline RenderOptions wavefront_options(int side, std::uint64_t spp, std::uint64_t seed) {
+  RenderOptions options;
+  options.width = options.height = side;
+  options.spp = spp;
+  options.seed = seed;
+  options.threads = 1;
+  return options;
+}
+
+/// Without shared paths.
+inline RenderOptions plain(RenderOptions options) {
+  options.reuse = {.automatic = false};
+  return options;
+}
+
 /// The reference integrator at a size, with independent random numbers.
 inline RenderOptions reference_options(int width, int height, std::uint64_t spp, std::uint64_t seed = 1) {
   RenderOptions options;
