@@ -11,7 +11,7 @@ namespace castray {
 class BlockNoise {
  public:
   /// From two independent films of the image. Per pixel and channel, (a-b)^2 tells the variance of a sample.
-  /// It is held to the radiance of a and of b in turn, lest a bright outlier excuse itself. Independence
+  /// The radiance's square that it is held to is a b, lest a bright outlier excuse itself. Independence
   /// makes this right where samples of one film are correlated: within one, as points of a sequence are, and
   /// between pixels, as those that share paths are.
   ///

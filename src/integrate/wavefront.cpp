@@ -61,10 +61,16 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   return k;
 }
 
+/// How far a sample's tiles reach over their edges.
+int reach_of(const KernelOptions& options, std::uint64_t sample) {
+  return sample < options.ragged ? ragged_reach : 0;
+}
+
 /// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
 /// sample, so that no tile's edge stays in one place.
 struct TileGrid {
   int shift_x = 0, shift_y = 0;  ///< of the grid, to the left and up, in pixels
+  int reach;                     ///< over a tile's edges, in pixels
   int x0, y0, x1, y1;            ///< tiles
 
   TileGrid(const Window& window, const KernelOptions& options, std::uint64_t sample) {
@@ -74,20 +80,19 @@ struct TileGrid {
       shift_x = static_cast<int>(h % tile_size);
       shift_y = static_cast<int>(h / tile_size % tile_size);
     }
-    const int more = sample < options.ragged ? ragged_reach : 0;
+    reach = reach_of(options, sample);
     const auto tile_of = [](int pixel) {
       return (pixel + tile_size) / tile_size - 1;
     };  // pixel >= -tile_size
-    x0 = tile_of(window.x0 + shift_x - more);
-    y0 = tile_of(window.y0 + shift_y - more);
-    x1 = tile_of(window.x1 - 1 + shift_x + more) + 1;
-    y1 = tile_of(window.y1 - 1 + shift_y + more) + 1;
+    x0 = tile_of(window.x0 + shift_x - reach);
+    y0 = tile_of(window.y0 + shift_y - reach);
+    x1 = tile_of(window.x1 - 1 + shift_x + reach) + 1;
+    y1 = tile_of(window.y1 - 1 + shift_y + reach) + 1;
   }
 
   /// The first tiles of row y, from x on, of which pixels want the sample: none, if the tile at x has none.
   TileJob job(int x, int y, std::uint64_t sample, const SampleMap& map) const {
     const int left = x * tile_size - shift_x, top = y * tile_size - shift_y;
-    constexpr int reach = ragged_reach;
     const auto wanted = [&](int tile) {
       const int at = left + tile * tile_size;
       return map.wants_any(at - reach, top - reach, at + tile_size + reach, top + tile_size + reach, sample);
@@ -170,8 +175,9 @@ class Wavefront {
   void add(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film, RowStats& stats) {
     const int count = job.tiles * tile_pixels;
     const auto lock_of = [&](int y) { return (y - window_.y0) / tile_size; };
-    const int first = std::max(job.y - ragged_reach, window_.y0);
-    const int last = std::min(job.y + tile_size + ragged_reach, window_.y1) - 1;
+    const int reach = reach_of(options_, job.sample);
+    const int first = std::max(job.y - reach, window_.y0);
+    const int last = std::min(job.y + tile_size + reach, window_.y1) - 1;
     for (int l = lock_of(first); first <= last && l <= lock_of(last); ++l) {
       const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
       for (int i = 0; i < count; ++i) {
