@@ -153,7 +153,7 @@ bool can_block(const Facet& f, const Scene& scene) {
 }
 
 FacetList view(const std::vector<Facet>& facets) {
-  FacetList list{facets.data(), {}};
+  FacetList list{facets.data(), {}, {}};
   for (const Facet& f : facets)
     for (int axis = axis_of(f); axis < 3; ++axis) ++list.first[axis + 1];
   return list;
@@ -195,6 +195,21 @@ Facets make_facets(const Scene& scene) {
       result.blocker_fields.push_back(field < 12 ? f.corner[field / 3][field % 3] : f.normal[field - 12]);
     }
   return result;
+}
+
+FacetsInDouble::FacetsInDouble(const Scene& scene, const std::vector<Facet>& facets)
+    : triangles_(mesh_of(scene)), facet_of_(scene.triangles.size()) {
+  for (std::uint32_t i = 0; i < facets.size(); ++i)
+    for (const std::uint32_t triangle : facets[i].triangle) facet_of_[triangle] = i;
+}
+
+void FacetsInDouble::closest(const void* self, const float origin[3], const float direction[3], float& t,
+                             std::uint32_t& facet) {
+  const auto& facets = *static_cast<const FacetsInDouble*>(self);
+  const Hit<double> hit = facets.triangles_.closest(
+      Ray<double>{{origin[0], origin[1], origin[2]}, {direction[0], direction[1], direction[2]}});
+  t = static_cast<float>(hit.t);
+  facet = hit.found() ? facets.facet_of_[hit.triangle] : Scene::no_index;
 }
 
 std::vector<Facet> emitting_facets(const Scene& scene) { return merge_triangles(scene, scene.lights); }

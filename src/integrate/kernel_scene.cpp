@@ -179,7 +179,9 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   if (plan.list) {
     facets = make_facets(scene);
     lights = shapes_of_lights(facets.facets, scene);
+    edges.emplace(scene, facets.facets);
     view.facets = facets.list();
+    view.facets.exact = edges->view();
     view.blockers = facets.blocker_list();
     view.blocker_fields = facets.blocker_field_list();
   } else {

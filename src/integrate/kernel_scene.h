@@ -20,6 +20,7 @@ struct KernelSceneData {
   KernelSceneData& operator=(const KernelSceneData&) = delete;
 
   Facets facets;                              ///< of a list
+  std::optional<FacetsInDouble> edges;        ///< of a list
   std::optional<WideBvh> bvh;                 ///< of a tree
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   std::vector<KernelMaterial> materials;

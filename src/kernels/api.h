@@ -23,10 +23,17 @@ struct Facet {
 };
 inline constexpr int facet_floats = sizeof(Facet) / sizeof(float);
 
+/// The closest hit of one ray by a test that does not err at edges; facet 0xffffffff is a miss.
+struct ExactFacets {
+  const void* of;
+  void (*closest)(const void* of, const float origin[3], const float direction[3], float& t, uint32_t& facet);
+};
+
 /// Facets sorted by axis: those of axis a are facets[first[a]] to facets[first[a + 1] - 1].
 struct FacetList {
   const Facet* facets;
   uint32_t first[4];
+  ExactFacets exact;  ///< of the same facets; only for closest hits
 };
 
 /// The facets that can lie between two points of the scene, field by field, padded to a multiple of 16 with

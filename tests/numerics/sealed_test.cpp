@@ -84,6 +84,22 @@ TEST_CASE("nothing gets out of a sealed lit room, onto its walls or the floor ar
   }
 }
 
+// Where a near and a far facet meet, at an outline, rounding must not call the far one the nearer.
+TEST_CASE("no spark of a shining inside is seen at the outlines of flat lists") {
+  SceneSketch sketch;
+  const Shape shell = icosphere(1);
+  const auto lamp = sketch.add_material(glowing);
+  sketch.add_mesh(shell.positions, shell.triangles, 0.4, {0, 0, 0}, true, lamp);
+  look(sketch.scene, {0.3, 0.5, 0.9}, {0, 0, 0});
+  RenderOptions many = small(64);
+  many.width = many.height = 96;
+  for (const Way& way : every_way(many)) {
+    if (way.options.integrator == Integrator::reference || way.options.accel != AccelKind::list) continue;
+    CAPTURE(way.name);
+    CHECK(lit_pixels(sketch.scene, way.options) == 0);
+  }
+}
+
 namespace {
 
 /// Two spheres around the origin, the outer one larger by `gap`.
