@@ -31,38 +31,53 @@ CASTRAY_INLINE Uint choose_by_power(const LightList& list, Float u) {
 CASTRAY_INLINE LightChoice choose_light(const LightList& list, Float u, Float deep,
                                         const Receiver& receiver) {
   if (list.cut_count > 0) return choose_by_importance(list, u, deep, receiver);
+  if (list.count == 1) return {Uint(0u), Float(1.f)};
   const Uint light = choose_by_power(list, u);
   return {light, gather(&list.lights->probability, light * uint32_t{light_floats})};
+}
+
+CASTRAY_INLINE Float in_all_lanes(float v) { return Float(v); }
+CASTRAY_INLINE Uint in_all_lanes(uint32_t v) { return Uint(v); }
+
+/// A KernelLight in each lane.
+struct Light {
+  Vec origin, edge1, edge2, normal, emission;
+  Float area, error, density;
+  Mask triangle, two_sided, rectangle;
+};
+template <class Field>
+CASTRAY_INLINE Light read_light(const KernelLight& first, Field field) {
+  const auto vec = [&](const float* v) { return Vec{field(v), field(v + 1), field(v + 2)}; };
+  const auto flag = [&](const uint32_t& v) { return field(&v) == Uint(1u); };
+  return {vec(first.origin),    vec(first.edge1),      vec(first.edge2),     vec(first.normal),
+          vec(first.emission),  field(&first.area),    field(&first.error),  field(&first.density),
+          flag(first.triangle), flag(first.two_sided), flag(first.rectangle)};
+}
+CASTRAY_INLINE Light light_of(const LightList& list, Uint light) {
+  if (list.count == 1) return read_light(*list.lights, [](const auto* v) { return in_all_lanes(*v); });
+  const Uint record = light * uint32_t{light_floats};
+  return read_light(*list.lights, [&](const auto* v) { return gather(v, record); });
 }
 
 /// A point on a light. `choice` and `deep` choose the light, u and v the point.
 CASTRAY_INLINE LightPoint sample_light(const LightList& list, const Receiver& receiver, Float choice,
                                        Float deep, Float u, Float v) {
   const LightChoice chosen = choose_light(list, choice, deep, receiver);
-  const Uint record = chosen.light * uint32_t{light_floats};
-  const KernelLight& first = *list.lights;
-  const Mask triangle = gather(&first.triangle, record) == Uint(1u);
-  const Mask fold = triangle & (u + v > Float(1.f));
-  Float a = select(fold, Float(1.f) - u, u), b = select(fold, Float(1.f) - v, v);
-  const Vec origin = gather_vec(first.origin, record), edge1 = gather_vec(first.edge1, record),
-            edge2 = gather_vec(first.edge2, record), normal = gather_vec(first.normal, record);
-  Float area = gather(&first.area, record);
+  const Light light = light_of(list, chosen.light);
+  const Mask fold = light.triangle & (u + v > Float(1.f));
+  Float a = select(fold, Float(1.f) - u, u), b = select(fold, Float(1.f) - v, v), area = light.area;
   if (list.by_solid_angle) {
-    const RectanglePoint seen = sample_seen_rectangle({origin - receiver.p, edge1, edge2, normal}, u, v);
-    const Mask can = seen.valid & (gather(&first.rectangle, record) == Uint(1u));
+    const RectanglePoint seen =
+        sample_seen_rectangle({light.origin - receiver.p, light.edge1, light.edge2, light.normal}, u, v);
+    const Mask can = seen.valid & light.rectangle;
     a = select(can, seen.a, a);
     b = select(can, seen.b, b);
     area = select(can, seen.inverse_density, area);
   }
-  const Vec p = fma(edge1, a, fma(edge2, b, origin));
+  const Vec p = fma(light.edge1, a, fma(light.edge2, b, light.origin));
   const Float inverse_density =
       select(chosen.probability > Float(0.f), area / chosen.probability, Float(0.f));
-  return {p,
-          normal,
-          gather_vec(first.emission, record) * inverse_density,
-          gather(&first.density, record),
-          gather(&first.two_sided, record) == Uint(1u),
-          gather(&first.error, record)};
+  return {p, light.normal, light.emission * inverse_density, light.density, light.two_sided, light.error};
 }
 
 /// The segment from the surface point p to a light point.
