@@ -77,11 +77,24 @@ CASTRAY_INLINE void add_packet(const TrianglePacket& packet, const Vec& y, const
   }
 }
 
-/// Beyond so many of either, a ray for each point of the box is cheaper.
-inline constexpr int most_shaft_triangles = 64, most_shaft_nodes = 48;
+/// How many triangles may lie in a shaft before a ray for each point of the box is cheaper. Where that was
+/// too few, the next shafts to the same box are given up sooner.
+struct ShaftBudget {
+  static constexpr int most = 256, least = 24;
+  int triangles = most;
+
+  int nodes() const { return triangles / 2; }
+  void gave_up() { triangles = triangles / 2 > least ? triangles / 2 : least; }
+  void succeeded(int found) {
+    if (found > triangles / 2 && triangles * 2 <= most) triangles *= 2;
+  }
+};
+
+static_assert(max_blockers >= ShaftBudget::most + max_leaf_packets * packet_size);
 
 /// The triangles whose pyramid from y meets the box; false if there are too many.
-CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, Shaft& out) {
+CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& box,
+                               const ShaftBudget& budget, Shaft& out) {
   out.count = 0;
   if (bvh.triangles == 0) return true;
   const Vec center = broadcast(box.center) - y, half = broadcast(box.half);
@@ -92,7 +105,7 @@ CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& 
     high[a] = box.center[a] + box.half[a] - apex[a];
   }
   const Hull hull = make_hull(low, high);
-  uint32_t stack[8 * (most_shaft_nodes + 1)];
+  uint32_t stack[8 * (ShaftBudget::most / 2 + 1)];
   int size = 0, nodes = 0;
   stack[size++] = bvh.root;
   while (size > 0) {
@@ -102,10 +115,10 @@ CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& 
       const TrianglePacket* packet = (const TrianglePacket*)at;
       for (uint32_t left = child % max_leaf_packets + 1; left; --left)
         add_packet(*packet++, y, center, half, out);
-      if (out.count > most_shaft_triangles) return false;
+      if (out.count > budget.triangles) return false;
       continue;
     }
-    if (++nodes > most_shaft_nodes) return false;
+    if (++nodes > budget.nodes()) return false;
     const WideNode& node = *(const WideNode*)at;
     for (uint32_t inside = children_in_hull(node, apex, hull); inside; inside &= inside - 1)
       stack[size++] = node.child[__builtin_ctz(inside)];

@@ -9,11 +9,21 @@ namespace castray::CASTRAY_ISA {
 
 inline constexpr int tile_vectors = tile_pixels / width;
 
+/// A tile's points are also bounded in parts, the same for every width.
+inline constexpr int tile_parts = 4, part_pixels = tile_pixels / tile_parts,
+                     part_vectors = part_pixels / width;
+
+/// The bounds of a tile's points, and of each 16 of them.
+struct TileBoxes {
+  Box all, part[tile_parts];
+};
+
 /// The points of one tile that gather: entries first to first + 63 of the camera's vertices.
 struct Gatherers {
   const Vertices& x;
   int first;
-  Box box;
+  const TileBoxes& boxes;
+  ShaftBudget budget{};
 };
 
 /// A point that sends light to the tile, on the side of its normal. `own`: the pixel of the tile that
@@ -45,20 +55,21 @@ CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
   return sum[0];
 }
 
-/// The bounds of a tile's points; empty tiles have a box without extent at the origin.
+/// The bounds of the points of some entries; without any the box has no extent and is at the origin.
+template <int vectors>
 CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
   const float* axes[3] = {x.p.x, x.p.y, x.p.z};
   Box box{};
-  Mask valid[tile_vectors];
+  Mask valid[vectors];
   uint32_t found = 0;
-  for (int i = 0; i < tile_vectors; ++i) {
+  for (int i = 0; i < vectors; ++i) {
     valid[i] = length_squared(load(x.normal, first + i * width)) > Float(0.f);
     found |= bits(valid[i]);
   }
   if (!found) return box;
   for (int axis = 0; axis < 3; ++axis) {
     Float low(__builtin_inff()), high(-__builtin_inff());
-    for (int i = 0; i < tile_vectors; ++i) {
+    for (int i = 0; i < vectors; ++i) {
       const Float p = load(axes[axis] + first + i * width);
       low = select(valid[i], min(low, p), low);
       high = select(valid[i], max(high, p), high);
@@ -74,9 +85,17 @@ CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
   return box;
 }
 
+/// `in_parts`: whether the parts' bounds are wanted too.
+CASTRAY_INLINE void bound_tile(const Vertices& x, int first, bool in_parts, TileBoxes& boxes) {
+  boxes.all = bounds_of<tile_vectors>(x, first);
+  if (!in_parts) return;
+  for (int i = 0; i < tile_parts; ++i) boxes.part[i] = bounds_of<part_vectors>(x, first + i * part_pixels);
+}
+
 /// Room for visibility tests.
 struct VisibilityScratch {
   Shaft shaft;
+  alignas(64) uint32_t pyramids[max_blockers + 16];
   VecArray<capacity> o, d;
   alignas(64) UintArray pixel;
   alignas(64) uint8_t blocked[capacity];
@@ -106,25 +125,39 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& t
     hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
 }
 
+/// From so many pyramids on it pays to choose those that matter to each part of a tile.
+inline constexpr int few_pyramids = 16;
+
 /// Takes out what is hidden from the sender.
 template <uint32_t features>
-CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
+CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, const FarEnds& ends,
                                  VisibilityScratch& s, Transfer& t) {
   constexpr bool weights = features & feature_materials;
+  constexpr int corners = (features & feature_bvh) ? 3 : 4;
   if constexpr (features & feature_bvh) {
-    if (!make_shaft(c.scene.bvh, y.p, tile.box, s.shaft))
+    if (!make_shaft(c.scene.bvh, y.p, tile.boxes.all, tile.budget, s.shaft)) {
+      tile.budget.gave_up();
       return hide_by_rays(c, y, tile, ends, s, weights, t);
+    }
+    tile.budget.succeeded(s.shaft.count);
   } else {
-    make_shaft(c.scene.blocker_fields, y.p, tile.box, s.shaft);
+    make_shaft(c.scene.blocker_fields, y.p, tile.boxes.all, s.shaft);
   }
   if (s.shaft.count == 0) return;
+  const bool choose = (features & feature_bvh) && s.shaft.count > few_pyramids;
+  int pyramids = s.shaft.count;
   for (int i = 0; i < tile_vectors; ++i) {
+    if (choose && i % part_vectors == 0) {
+      const Box& part = tile.boxes.part[i / part_vectors];
+      pyramids =
+          pyramids_of_part<corners>(s.shaft, broadcast(part.center) - y.p, broadcast(part.half), s.pyramids);
+    }
     const Mask open = t.density[i] > Float(0.f);
     if (none(open)) continue;
     const Vec d = load(tile.x.p, tile.first + i * width) - y.p;
     Mask hidden(false);
-    for (int b = 0; b < s.shaft.count; ++b) {
-      hidden = hidden | hides(s.shaft, b, d);
+    for (int b = 0; b < pyramids; ++b) {
+      hidden = hidden | hides<corners>(s.shaft, choose ? s.pyramids[b] : (uint32_t)b, d);
       if ((b & 3) == 3 && none(open & ~hidden)) break;
     }
     const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
@@ -163,7 +196,7 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
 }
 
 template <uint32_t features>
-CASTRAY_INLINE void transfer(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
+CASTRAY_INLINE void transfer(Context& c, const Sender& y, Gatherers& tile, const FarEnds& ends,
                              VisibilityScratch& s, Transfer& t) {
   unoccluded_transfer<features>(c, y, tile, t);
   hide_blocked<features>(c, y, tile, ends, s, t);

@@ -18,7 +18,7 @@ struct Scratch {
   Suffixes suffixes;
   Gathered gathered;
   VisibilityScratch visibility;
-  Box boxes[max_tiles];
+  TileBoxes boxes[max_tiles];
   VecArray<batch_size> direct;  ///< radiance of each pixel without what its first bounce brings
 };
 
@@ -121,7 +121,8 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
     split_specular(c.scene, s.camera, s.vertices);
     if (s.vertices.count > 0) follow<features>(c, s, s.vertices, 0, first_roulette);
   }
-  for (int tile = 0; tile < c.job.tiles; ++tile) s.boxes[tile] = bounds_of(s.camera, tile * tile_pixels);
+  for (int tile = 0; tile < c.job.tiles; ++tile)
+    bound_tile(s.camera, tile * tile_pixels, features & feature_bvh, s.boxes[tile]);
   gather_light<features>(c, s.camera, s.boxes, s.ends, s.visibility, s.gathered);
   add_gathered_to_direct<features>(c, s);
   start_suffixes<features>(c, s.camera, s.suffixes, s.paths);

@@ -66,8 +66,8 @@ CASTRAY_INLINE Receiver receiver_of(const Gatherers& tile) {
   float cosine = 1;
   for (int l = 0; l < width; ++l) cosine = lane(least, l) < cosine ? lane(least, l) : cosine;
   cosine -= 0x1p-12f;
-  const float* half = tile.box.half;
-  return {broadcast(tile.box.center),
+  const float* half = tile.boxes.all.half;
+  return {broadcast(tile.boxes.all.center),
           mean,
           Float(__builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])),
           Float(cosine),
@@ -94,12 +94,12 @@ CASTRAY_INLINE LightPoint tile_light_points(const Context& c, const Receiver& ti
 
 /// Light points shared by each tile.
 template <uint32_t features>
-CASTRAY_INLINE void gather_light(Context& c, const Vertices& x, const Box* boxes, const FarEnds& ends,
+CASTRAY_INLINE void gather_light(Context& c, const Vertices& x, const TileBoxes* boxes, const FarEnds& ends,
                                  VisibilityScratch& s, Gathered& gathered) {
   if (c.scene.lights.count == 0) return;
   const int points = c.options.light_points;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
+    Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     const uint32_t key = tile_key(c, tile);
     const Receiver receiver = receiver_of(gatherers);
     for (int first = 0; first < points; first += width) {
@@ -356,12 +356,12 @@ CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixe
 /// Every pixel gathers from every suffix of its tile. A suffix that escaped serves the pixel it came from
 /// alone.
 template <uint32_t features>
-CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const Box* boxes, const FarEnds& ends,
-                                    const Suffixes& suffixes, const Radiance& radiance, VisibilityScratch& s,
-                                    Gathered& gathered) {
+CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const TileBoxes* boxes,
+                                    const FarEnds& ends, const Suffixes& suffixes, const Radiance& radiance,
+                                    VisibilityScratch& s, Gathered& gathered) {
   const float stratum = stratum_of(c.options);
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
+    Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     for (int j = 0; j < c.options.suffixes; ++j) {
       const int suffix = tile * tile_pixels + j, slot = batch_size + suffix,
                 origin = (int)suffixes.origin[suffix];

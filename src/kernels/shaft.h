@@ -12,10 +12,11 @@ struct Box {
   float center[3], half[3];
 };
 
-inline constexpr int max_blockers = 128;
+inline constexpr int max_blockers = 320;
 
-/// What may lie between a point y and a box: pyramids with apex y over a facet. A point y + d is hidden by
-/// pyramid i if d is inside its side planes, edge . d >= -margin, and beyond its base, normal . d > base.
+/// What may lie between a point y and a box: pyramids with apex y over a facet of three or four corners. A
+/// point y + d is hidden by pyramid i if d is inside its side planes, edge . d >= -margin, and beyond its
+/// base, normal . d > base.
 struct Shaft {
   int count = 0;
   alignas(64) float edge[4][3][max_blockers + 16], margin[4][max_blockers + 16];
@@ -46,8 +47,8 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
   const Float base =
       abs(above);  // the points in the box are off what they lie on by more than is rounded here
   Mask meets = lanes & (support(beyond, center, half) > base);
-  Vec edge[4];
-  Float margin[4];
+  Vec edge[corners];
+  Float margin[corners];
   for (int k = 0; k < corners; ++k) {
     const Vec &from = corner[k], &to = corner[(k + 1) % corners];
     const Vec e = antisymmetric_cross(from, to);
@@ -56,12 +57,8 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
     meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
   }
   if (none(meets)) return;
-  if constexpr (corners == 3) {
-    edge[3] = edge[2];
-    margin[3] = margin[2];
-  }
   const int n = out.count;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < corners; ++k) {
     compress_store(out.edge[k][0] + n, meets, edge[k].x);
     compress_store(out.edge[k][1] + n, meets, edge[k].y);
     compress_store(out.edge[k][2] + n, meets, edge[k].z);
@@ -90,10 +87,28 @@ CASTRAY_INLINE void make_shaft(const BlockerList& blockers, const Vec& y, const 
   }
 }
 
+/// The numbers of the pyramids, in lanes, that meet a box around y + center; returns how many.
+template <int corners>
+CASTRAY_INLINE int pyramids_of_part(const Shaft& s, const Vec& center, const Vec& half, uint32_t* out) {
+  int n = 0;
+  for (int i = 0; i < s.count; i += width) {
+    const auto at = [&](const float(&v)[3][max_blockers + 16]) {
+      return Vec{load(v[0] + i), load(v[1] + i), load(v[2] + i)};
+    };
+    Mask meets = first_lanes(s.count - i) & (support(at(s.normal), center, half) > load(s.base + i));
+    for (int k = 0; k < corners; ++k)
+      meets = meets & (support(at(s.edge[k]), center, half) + load(s.margin[k] + i) >= Float(0.f));
+    compress_store(out + n, meets, Uint((uint32_t)i) + lane_index());
+    n += count(meets);
+  }
+  return n;
+}
+
 /// Where pyramid i hides y + d.
-CASTRAY_INLINE Mask hides(const Shaft& s, int i, const Vec& d) {
+template <int corners>
+CASTRAY_INLINE Mask hides(const Shaft& s, uint32_t i, const Vec& d) {
   Float inside = Float(0.f);
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < corners; ++k) {
     const Vec edge{Float(s.edge[k][0][i]), Float(s.edge[k][1][i]), Float(s.edge[k][2][i])};
     inside = min(inside, dot(edge, d) + Float(s.margin[k][i]));
   }
