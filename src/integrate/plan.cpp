@@ -56,7 +56,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
   plan.mis = uses_mis(options.mis, needs.emitting_share);
   plan.choose_lights_by_importance = options.lights != LightSampling::area;
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
-  plan.suffixes = options.reuse.automatic ? 32 : options.reuse.suffixes;
+  plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options);
   plan.kernel = kernel_name(plan);

@@ -63,38 +63,46 @@ CASTRAY_INLINE uint32_t children_in_hull(const WideNode& node, const float* y, c
   return inside;
 }
 
-CASTRAY_INLINE void add_packet(const TrianglePacket& packet, const Vec& y, const Vec& center, const Vec& half,
-                               Shaft& out) {
+inline constexpr int packets_at_once = width > packet_size ? width / packet_size : 1;
+
+/// Adds the triangles of `count` <= packets_at_once packets.
+CASTRAY_INLINE void add_packets(const TrianglePacket* const (&packets)[packets_at_once], int count,
+                                const Vec& y, const Vec& center, const Vec& half, Shaft& out) {
   constexpr int lanes = width < packet_size ? width : packet_size;
   for (int k = 0; k < packet_size; k += lanes) {
     Vec corner[3];
-    for (int v = 0; v < 3; ++v)  // more lanes than a packet has read on into its next rows, and are not used
-      corner[v] =
-          Vec{load(packet.vertex[v][0] + k), load(packet.vertex[v][1] + k), load(packet.vertex[v][2] + k)} -
-          y;
+    for (int v = 0; v < 3; ++v) {
+      const auto& first = packets[0]->vertex[v];
+#if CASTRAY_WIDTH == 16
+      const auto& second = packets[count - 1]->vertex[v];
+      corner[v] = Vec{load_halves(first[0], second[0]), load_halves(first[1], second[1]),
+                      load_halves(first[2], second[2])} -
+                  y;
+#else
+      corner[v] = Vec{load(first[0] + k), load(first[1] + k), load(first[2] + k)} - y;
+#endif
+    }
     const Vec normal = antisymmetric_cross(corner[1] - corner[0], corner[2] - corner[0]);
-    add_pyramids(corner, normal, center, half, first_lanes(lanes), out);
+    add_pyramids(corner, normal, center, half, first_lanes(count * lanes), out);
   }
 }
 
-/// How many triangles may lie in a shaft before a ray for each point of the box is cheaper. Where that was
-/// too few, the next shafts to the same box are given up sooner.
+/// How many packets of triangles, and four times as many nodes, may lie in a shaft before a ray for each
+/// point of the box is cheaper. Where that was too few, the next shafts to the same box are given up sooner.
 struct ShaftBudget {
-  static constexpr int most = 256, least = 24;
-  int triangles = most;
+  static constexpr int most = max_blockers / packet_size, least = 3;
+  int packets = most;
 
-  int nodes() const { return triangles / 2; }
-  void gave_up() { triangles = triangles / 2 > least ? triangles / 2 : least; }
-  void succeeded(int found) {
-    if (found > triangles / 2 && triangles * 2 <= most) triangles *= 2;
+  int nodes() const { return 4 * packets; }
+  void gave_up() { packets = packets / 2 > least ? packets / 2 : least; }
+  void succeeded(int met) {
+    if (met > packets / 2 && packets * 2 <= most) packets *= 2;
   }
 };
 
-static_assert(max_blockers >= ShaftBudget::most + max_leaf_packets * packet_size);
-
 /// The triangles whose pyramid from y meets the box; false if there are too many.
-CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& box,
-                               const ShaftBudget& budget, Shaft& out) {
+CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftBudget& budget,
+                               Shaft& out) {
   out.count = 0;
   if (bvh.triangles == 0) return true;
   const Vec center = broadcast(box.center) - y, half = broadcast(box.half);
@@ -105,24 +113,31 @@ CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Vec& y, const Box& 
     high[a] = box.center[a] + box.half[a] - apex[a];
   }
   const Hull hull = make_hull(low, high);
-  uint32_t stack[8 * (ShaftBudget::most / 2 + 1)];
-  int size = 0, nodes = 0;
+  uint32_t stack[8 * (4 * ShaftBudget::most + 1)];
+  const TrianglePacket* waiting[packets_at_once];
+  int size = 0, nodes = 0, packets = 0, to_add = 0;
   stack[size++] = bvh.root;
   while (size > 0) {
     const uint32_t child = stack[--size];
     const char* at = bvh.blocks + (uint64_t)(child / child_unit) * block_bytes;
     if (child & leaf_flag) {
-      const TrianglePacket* packet = (const TrianglePacket*)at;
-      for (uint32_t left = child % max_leaf_packets + 1; left; --left)
-        add_packet(*packet++, y, center, half, out);
-      if (out.count > budget.triangles) return false;
+      const int count = (int)(child % max_leaf_packets) + 1;
+      if ((packets += count) > budget.packets) return budget.gave_up(), false;
+      for (int k = 0; k < count; ++k) {
+        waiting[to_add++] = (const TrianglePacket*)at + k;
+        if (to_add < packets_at_once) continue;
+        add_packets(waiting, to_add, y, center, half, out);
+        to_add = 0;
+      }
       continue;
     }
-    if (++nodes > budget.nodes()) return false;
+    if (++nodes > budget.nodes()) return budget.gave_up(), false;
     const WideNode& node = *(const WideNode*)at;
     for (uint32_t inside = children_in_hull(node, apex, hull); inside; inside &= inside - 1)
       stack[size++] = node.child[__builtin_ctz(inside)];
   }
+  if (to_add > 0) add_packets(waiting, to_add, y, center, half, out);
+  budget.succeeded(packets);
   return true;
 }
 

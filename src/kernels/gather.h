@@ -135,11 +135,8 @@ CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, c
   constexpr bool weights = features & feature_materials;
   constexpr int corners = (features & feature_bvh) ? 3 : 4;
   if constexpr (features & feature_bvh) {
-    if (!make_shaft(c.scene.bvh, y.p, tile.boxes.all, tile.budget, s.shaft)) {
-      tile.budget.gave_up();
+    if (!make_shaft(c.scene.bvh, y.p, tile.boxes.all, tile.budget, s.shaft))
       return hide_by_rays(c, y, tile, ends, s, weights, t);
-    }
-    tile.budget.succeeded(s.shaft.count);
   } else {
     make_shaft(c.scene.blocker_fields, y.p, tile.boxes.all, s.shaft);
   }

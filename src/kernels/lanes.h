@@ -135,6 +135,10 @@ CASTRAY_INLINE Float gather(const float* base, Uint i) {
 CASTRAY_INLINE Uint gather(const uint32_t* base, Uint i) {
   return (RawUint)_mm512_i32gather_epi32((__m512i)i.v, base, 4);
 }
+/// Eight values from each of two places.
+CASTRAY_INLINE Float load_halves(const float* low, const float* high) {
+  return (RawFloat)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(low)), _mm256_loadu_ps(high), 1);
+}
 /// table[i] for i < 16.
 CASTRAY_INLINE Uint lookup16(const uint32_t* table, Uint i) {
   return (RawUint)_mm512_maskz_permutexvar_epi32((__mmask16)0xffff, (__m512i)i.v, _mm512_loadu_si512(table));

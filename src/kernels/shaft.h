@@ -12,7 +12,7 @@ struct Box {
   float center[3], half[3];
 };
 
-inline constexpr int max_blockers = 320;
+inline constexpr int max_blockers = 384;
 
 /// What may lie between a point y and a box: pyramids with apex y over a facet of three or four corners. A
 /// point y + d is hidden by pyramid i if d is inside its side planes, edge . d >= -margin, and beyond its
