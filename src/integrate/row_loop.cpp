@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <mutex>
 #include <tuple>
@@ -23,28 +24,34 @@ constexpr std::uint64_t longest_pass = 64;             ///< samples per pixel
 constexpr std::size_t reported_nonfinite = 8;
 constexpr double seconds_between_reports = 0.1;
 
-/// Ends of the passes, counted from the first sample: 1, 2, 4, ... and from the longest pass on its
-/// multiples.
-std::vector<std::uint64_t> pass_ends(std::uint64_t samples, std::uint64_t pixels) {
-  std::uint64_t longest = longest_pass;
-  while (longest > 1 && longest * pixels > samples_of_a_pass) longest /= 2;
-  std::vector<std::uint64_t> ends;
-  for (std::uint64_t end = 1; end < samples; end += std::min(end, longest)) ends.push_back(end);
-  ends.push_back(samples);
-  return ends;
-}
+/// Passes end, counted from the first sample, at 1, 2, 4, ..., from the longest pass on at its multiples, and
+/// at the last sample.
+class Passes {
+ public:
+  Passes(std::uint64_t samples, std::uint64_t pixels) : samples_(samples) {
+    while (longest_ > 1 && longest_ * pixels > samples_of_a_pass) longest_ /= 2;
+  }
+
+  /// The first end that is at least n, 1 <= n <= all samples.
+  std::uint64_t end_from(std::uint64_t n) const {
+    return std::min(samples_, n <= longest_ ? std::bit_ceil(n) : (n + longest_ - 1) / longest_ * longest_);
+  }
+
+ private:
+  std::uint64_t samples_, longest_ = longest_pass;
+};
 
 /// How many samples each row of an earlier run has. Its rows were left at the end of a pass, or of the whole
 /// run; pixels count less where samples were dropped.
-std::vector<std::uint64_t> finished_samples(const Film& film, std::vector<std::uint64_t> ends) {
-  if (!film.samples.empty())
-    ends.insert(std::lower_bound(ends.begin(), ends.end(), film.samples[0].count), film.samples[0].count);
+std::vector<std::uint64_t> finished_samples(const Film& film, const Passes& passes) {
   std::vector<std::uint64_t> finished;
   const Window& w = film.window();
   for (int y = w.y0; y < w.y1; ++y) {
     std::uint64_t most = 0;
     for (int x = w.x0; x < w.x1; ++x) most = std::max<std::uint64_t>(most, film.count(x, y));
-    finished.push_back(most == 0 ? 0 : *std::lower_bound(ends.begin(), ends.end() - 1, most));
+    finished.push_back(most == 0 ? 0 : passes.end_from(most));
+    if (!film.samples.empty() && most <= film.samples[0].count)
+      finished.back() = std::min(finished.back(), film.samples[0].count);
   }
   return finished;
 }
@@ -66,8 +73,8 @@ class RowLoop {
         map_(map),
         window_(window_of(scene, options)),
         samples_(map.range()),
-        ends_(pass_ends(samples_.count, static_cast<std::uint64_t>(window_.width()) *
-                                            static_cast<std::uint64_t>(window_.height()))) {
+        passes_(samples_.count,
+                static_cast<std::uint64_t>(window_.width()) * static_cast<std::uint64_t>(window_.height())) {
     result_.film = Film(window_, brightest_emission(scene));
     result_.film.key = film_key(scene, options);
     finished_.resize(static_cast<std::size_t>(window_.height()));
@@ -80,7 +87,8 @@ class RowLoop {
 
   RenderResult run(const BandWork& work) {
     begin_ = Clock::now();
-    for (const std::uint64_t end : ends_) {
+    for (std::uint64_t end = 0; end < samples_.count;) {
+      end = passes_.end_from(end + 1);
       run_pass(end, work);
       note_samples();
       if (!stopped_) report(&result_.film);
@@ -108,7 +116,7 @@ class RowLoop {
     if (!same || !within)
       throw InputError("the film to resume is of another render; remove it or give the same options");
     film = start;
-    finished_ = finished_samples(film, ends_);
+    finished_ = finished_samples(film, passes_);
   }
 
   /// Brings every row to `end` samples.
@@ -178,7 +186,7 @@ class RowLoop {
   Window window_;
   SampleRange samples_;
   std::uint64_t all_ = map_.total();  ///< paths
-  std::vector<std::uint64_t> ends_;
+  Passes passes_;
   RenderResult result_;
   std::vector<std::uint64_t> finished_;  ///< samples of each row, counted from the first
   Clock::time_point begin_;
