@@ -72,15 +72,10 @@ CASTRAY_INLINE void add_packets(const TrianglePacket* const (&packets)[packets_a
   for (int k = 0; k < packet_size; k += lanes) {
     Vec corner[3];
     for (int v = 0; v < 3; ++v) {
-      const auto& first = packets[0]->vertex[v];
-#if CASTRAY_WIDTH == 16
-      const auto& second = packets[count - 1]->vertex[v];
-      corner[v] = Vec{load_halves(first[0], second[0]), load_halves(first[1], second[1]),
-                      load_halves(first[2], second[2])} -
+      const auto &first = packets[0]->vertex[v], &last = packets[count - 1]->vertex[v];
+      corner[v] = Vec{load_octets(first[0] + k, last[0]), load_octets(first[1] + k, last[1]),
+                      load_octets(first[2] + k, last[2])} -
                   y;
-#else
-      corner[v] = Vec{load(first[0] + k), load(first[1] + k), load(first[2] + k)} - y;
-#endif
     }
     const Vec normal = antisymmetric_cross(corner[1] - corner[0], corner[2] - corner[0]);
     add_pyramids(corner, normal, center, half, first_lanes(count * lanes), out);

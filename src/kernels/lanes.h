@@ -135,8 +135,8 @@ CASTRAY_INLINE Float gather(const float* base, Uint i) {
 CASTRAY_INLINE Uint gather(const uint32_t* base, Uint i) {
   return (RawUint)_mm512_i32gather_epi32((__m512i)i.v, base, 4);
 }
-/// Eight values from each of two places.
-CASTRAY_INLINE Float load_halves(const float* low, const float* high) {
+/// Eight values from each of two places; in fewer lanes those of the first alone.
+CASTRAY_INLINE Float load_octets(const float* low, const float* high) {
   return (RawFloat)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(low)), _mm256_loadu_ps(high), 1);
 }
 /// table[i] for i < 16.
@@ -240,6 +240,7 @@ CASTRAY_INLINE Uint lookup16(const uint32_t* table, Uint i) { return gather(tabl
 
 #endif
 
+CASTRAY_INLINE Float load_octets(const float* first, const float*) { return load(first); }
 /// Lane l is bit l of `b`.
 CASTRAY_INLINE Mask mask_of_bits(uint32_t b) {
   const RawInt lane_bit = (RawInt)(RawUint{} + 1u) << (RawInt)lane_index().v;
