@@ -252,6 +252,16 @@ CASTRAY_INLINE void split_glossy(const KernelScene& scene, Vertices& y, Vertices
   y.count = kept;
 }
 
+/// Keeps the lanes of v, which belong to the vertices from i on, with their suffixes.
+CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y, int i, const Vec& v) {
+  for (int l = 0; l < width && i + l < y.count; ++l) {
+    const uint32_t suffix = y.names.slot[i + l] - batch_size;
+    to.x[suffix] = lane(v.x, l);
+    to.y[suffix] = lane(v.y, l);
+    to.z[suffix] = lane(v.z, l);
+  }
+}
+
 /// One light point for each glossy suffix, without what the suffix makes of it.
 template <uint32_t features>
 CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& out) {
@@ -272,12 +282,7 @@ CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& 
     compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);
     compress_store(out.slot + n, lit, load(y.names.slot + i) + Uint((uint32_t)batch_size));
     out.count += count(lit);
-    for (int l = 0; l < width && i + l < y.count; ++l) {
-      const uint32_t suffix = y.names.slot[i + l] - batch_size;
-      suffixes.to_light.x[suffix] = lane(wi.x, l);
-      suffixes.to_light.y[suffix] = lane(wi.y, l);
-      suffixes.to_light.z[suffix] = lane(wi.z, l);
-    }
+    keep_of_suffixes(suffixes.to_light, y, i, wi);
   }
 }
 
@@ -305,12 +310,7 @@ CASTRAY_INLINE void scatter_glossy(const Context& c, const Vertices& y, Suffixes
     compress_store(out.names.light_u + k, going, n.u[2]);
     compress_store(out.names.light_v + k, going, n.u[3]);
     out.count += count(going);
-    for (int l = 0; l < width && i + l < y.count; ++l) {
-      const uint32_t suffix = y.names.slot[i + l] - batch_size;
-      suffixes.onward.x[suffix] = lane(wi.x, l);
-      suffixes.onward.y[suffix] = lane(wi.y, l);
-      suffixes.onward.z[suffix] = lane(wi.z, l);
-    }
+    keep_of_suffixes(suffixes.onward, y, i, wi);
   }
 }
 
