@@ -7,6 +7,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "core/tool_main.h"
 #include "ray_bench.h"
 
 namespace castray {
@@ -103,7 +104,7 @@ void measure(const Options& options) {
                             RayResult* results) { trace(scene.get(), rays, any, first, last, results); });
 }
 
-void run(int argc, char** argv) {
+int run(int argc, char** argv) {
   Options options;
   CLI::App app{"Embree's rays per second on the meshes and rays of files.", "castray-embree-rays"};
   add_ray_bench_options(app, options);
@@ -111,25 +112,13 @@ void run(int argc, char** argv) {
   app.add_option("--quality", options.quality)
       ->check(CLI::IsMember({"low", "medium", "high"}))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    app.exit(success);
-    return;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
-  }
-  measure(options);
+  return tool_main(app, argc, argv, [&] {
+    measure(options);
+    return 0;
+  });
 }
 
 }  // namespace
 }  // namespace castray
 
-int main(int argc, char** argv) {
-  try {
-    castray::run(argc, argv);
-  } catch (const castray::InputError& error) {
-    fmt::print(stderr, "castray-embree-rays: error: {}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return castray::run(argc, argv); }

@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "accel/wide_bvh.h"
+#include "core/tool_main.h"
 #include "integrate/wavefront.h"
 #include "ray_bench.h"
 #include "ray_sets.h"
@@ -70,7 +71,7 @@ void measure(const Options& options, const MeshView& mesh) {
                });
 }
 
-void run(int argc, char** argv) {
+int run(int argc, char** argv) {
   Options options;
   CLI::App app{"Rays per second on the meshes and rays of files.", "castray-rays"};
   add_ray_bench_options(app, options);
@@ -90,31 +91,19 @@ void run(int argc, char** argv) {
   app.add_option("--quad", options.set.quad, "of shadow rays: corner and two edges, 9 numbers")
       ->delimiter(',')
       ->expected(9);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    app.exit(success);
-    return;
-  } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
-  }
-  const Soup soup(read_floats(options.mesh, 9));
-  if (!options.make.empty()) {
-    if (options.write.empty()) throw InputError("--make needs --write FILE");
-    write_ray_set(options, soup.view());
-  } else {
-    measure(options, soup.view());
-  }
+  return tool_main(app, argc, argv, [&] {
+    const Soup soup(read_floats(options.mesh, 9));
+    if (options.make.empty()) {
+      measure(options, soup.view());
+    } else {
+      if (options.write.empty()) throw InputError("--make needs --write FILE");
+      write_ray_set(options, soup.view());
+    }
+    return 0;
+  });
 }
 
 }  // namespace
 }  // namespace castray
 
-int main(int argc, char** argv) {
-  try {
-    castray::run(argc, argv);
-  } catch (const castray::InputError& error) {
-    fmt::print(stderr, "castray-rays: error: {}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return castray::run(argc, argv); }

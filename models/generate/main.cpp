@@ -3,13 +3,12 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cstring>
 #include <filesystem>
 #include <ostream>
 
-#include "castray/error.h"
 #include "core/files.h"
+#include "core/tool_main.h"
 #include "generate/shapes.h"
 
 namespace castray {
@@ -90,33 +89,26 @@ int run(int argc, char** argv) {
          "-o", file,
          "FILE.obj; FILE.soup, raw float32, 9 a triangle; or FILE.json, a Cornell box around FILE.obj")
       ->required();
-  CLI11_PARSE(app, argc, argv);
-
-  const fs::path target = file;
-  const fs::path obj = fs::path(target).replace_extension(".obj");
-  const Shape made = make_shape(shape, triangles, seed);
-  const std::string title = fmt::format("{}, {} triangles, seed {}", shape, made.triangles.size(), seed);
-  if (target.extension() == ".soup") {
-    write_soup(made, target);
-  } else if (target.extension() == ".obj" || target.extension() == ".json") {
-    write_obj(made, title, obj);
-    if (target.extension() == ".json") write_scene(shape, obj, target);
-  } else {
-    throw InputError({file}, "must end in .obj, .soup or .json");
-  }
-  fmt::print("{}: {}\n", file, title);
-  return 0;
+  return tool_main(app, argc, argv, [&] {
+    const fs::path target = file;
+    const fs::path obj = fs::path(target).replace_extension(".obj");
+    const Shape made = make_shape(shape, triangles, seed);
+    const std::string title = fmt::format("{}, {} triangles, seed {}", shape, made.triangles.size(), seed);
+    if (target.extension() == ".soup") {
+      write_soup(made, target);
+    } else if (target.extension() == ".obj" || target.extension() == ".json") {
+      write_obj(made, title, obj);
+      if (target.extension() == ".json") write_scene(shape, obj, target);
+    } else {
+      throw InputError({file}, "must end in .obj, .soup or .json");
+    }
+    fmt::print("{}: {}\n", file, title);
+    return 0;
+  });
 }
 
 }  // namespace
 
 }  // namespace castray
 
-int main(int argc, char** argv) {
-  try {
-    return castray::run(argc, argv);
-  } catch (const castray::InputError& error) {
-    fmt::print(stderr, "castray-generate: error: {}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return castray::run(argc, argv); }
