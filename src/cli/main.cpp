@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <csignal>
 #include <exception>
 #include <new>
 #include <string>
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "castray: error: {}\n", castray::printable(message, std::string::npos));
     return 2;
   };
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails as on a full disk
   try {
     return castray::cli::parse_command_line(argc, argv)();
   } catch (const std::bad_alloc&) {

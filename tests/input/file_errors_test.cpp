@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -54,6 +55,7 @@ struct Case {
   std::function<void(const Folder&)> prepare;
   Words words;
   std::string message;
+  RunSettings settings{};
 };
 
 Case cut_image(const std::string& suffix, const std::string& message) {
@@ -104,6 +106,10 @@ const std::vector<Case> cases = {
      [](const Folder& f) { fs::create_symlink("/dev/zero", f.folder / "z.obj"); },
      {"info", "z.obj"},
      "z.obj: does not end; give a regular file"},
+    {"a file whose reading fails",
+     [](const Folder& f) { fs::create_symlink("/proc/self/mem", f.folder / "r.obj"); },
+     {"info", "r.obj"},
+     "r.obj: cannot be read: Input/output error"},
     {"a file longer than memory",
      [](const Folder& f) {
        write(f.folder / "l.obj", "");
@@ -190,6 +196,11 @@ const std::vector<Case> cases = {
      [](const Folder& f) { fs::create_symlink("/dev/full", f.folder / "full.png"); },
      {"render", "s.json", "-q", "-o", "full.png"},
      "full.png: "},
+    {"a disk that fills while an image is written",
+     nothing,
+     {"render", "s.json", "-q", "--size", "64x64", "-o", "x.pfm"},
+     "x.pfm: cannot be written: File too large; free some space",
+     {.largest_file = 4096}},
     {"a full disk for statistics",
      [](const Folder& f) { fs::create_symlink("/dev/full", f.folder / "full.json"); },
      {"render", "s.json", "-q", "-o", "x.png", "--stats", "full.json"},
@@ -212,7 +223,7 @@ TEST_CASE("a faulty file gives one line, exit code 2, and takes little memory") 
     INFO(faulty.what);
     const Folder folder;
     faulty.prepare(folder);
-    const RunResult outcome = folder.run(faulty.words);
+    const RunResult outcome = folder.run(faulty.words, faulty.settings);
     INFO(outcome.err);
     CHECK(outcome.err.starts_with("castray: error: "));
     CHECK(outcome.err.find(faulty.message) != std::string::npos);
@@ -221,6 +232,8 @@ TEST_CASE("a faulty file gives one line, exit code 2, and takes little memory") 
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.out == "");
     CHECK(outcome.peak_kilobytes < 700'000);
+    CHECK(std::ranges::none_of(folder.folder.names(),
+                               [](const std::string& n) { return n.ends_with(".tmp"); }));
   }
 }
 

@@ -93,6 +93,12 @@ const std::vector<Case> cases = {
             "s.json:2:27: \"position\" must be an array of 3 numbers, but has 2"),
     in_line("position with a string", R"(  "camera": { "position": [0,0,"x"], "look_at": [0,0,1] },)",
             "s.json:2:32: \"position\"[2] must be a number, not a string"),
+    in_line(
+        "position with NaN", R"(  "camera": { "position": [0,0,NaN], "look_at": [0,0,1] },)",
+        "s.json:2:32: not valid JSON: syntax error while parsing value - invalid literal; last read: '0,N'"),
+    in_line("position beyond double's range",
+            R"(  "camera": { "position": [0,0,1e999], "look_at": [0,0,1] },)",
+            "s.json:2:36: not valid JSON: number overflow parsing '1e999'"),
     in_line("look_at = position", R"(  "camera": { "position": [0,0,1], "look_at": [0,0,1] },)",
             "s.json:2:13: the camera's look_at must differ from its position"),
     in_line("up along the view", R"(  "camera": { "position": [0,0,0], "look_at": [0,2,0] },)",

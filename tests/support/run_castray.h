@@ -33,8 +33,9 @@ struct RunSettings {
   std::filesystem::path folder{};                                ///< to run in
   std::vector<std::pair<std::string, std::string>> variables{};  ///< environment
   std::string input_file = "/dev/null";
-  unsigned seconds = 120;  ///< ends it with SIGALRM
-  int signal = 0;          ///< sent once it has written to stderr
+  unsigned seconds = 120;               ///< ends it with SIGALRM
+  int signal = 0;                       ///< sent once it has written to stderr
+  rlim_t largest_file = RLIM_INFINITY;  ///< in bytes
 };
 
 inline std::string file_content(const std::filesystem::path& file) {
@@ -63,6 +64,8 @@ inline RunResult run_castray(const std::vector<std::string>& arguments, const Ru
     redirect(2, err, O_WRONLY | O_CREAT | O_TRUNC);
     if (!settings.folder.empty() && chdir(settings.folder.c_str()) != 0) _exit(126);
     for (const auto& [name, value] : settings.variables) setenv(name.c_str(), value.c_str(), 1);
+    const rlimit largest_file{settings.largest_file, settings.largest_file};
+    if (setrlimit(RLIMIT_FSIZE, &largest_file) != 0) _exit(126);
     alarm(settings.seconds);
     execv(argv[0], argv.data());
     _exit(127);
