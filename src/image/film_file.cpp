@@ -23,6 +23,7 @@ static_assert(std::endian::native == std::endian::little, "film files are writte
 namespace {
 
 constexpr std::string_view magic = "castray film 1\n";
+constexpr std::uint64_t max_side = 1 << 24;
 using nlohmann::json;
 
 std::uint32_t checksum(std::string_view bytes) {
@@ -111,29 +112,37 @@ struct FilmFile {
     return at + count * sizeof(T);
   }
 
+  static void demand(bool good, const char* what) {
+    if (!good) throw json::other_error::create(500, what, nullptr);
+  }
+
+  /// A whole number up to `most`: json's own conversion cuts what does not fit.
+  static std::uint64_t whole(const json& value, std::uint64_t most = ~std::uint64_t{0}) {
+    demand(value.is_number_unsigned() && value.get<std::uint64_t>() <= most, "bad number");
+    return value.get<std::uint64_t>();
+  }
+
   /// A film without its sums. Throws json::exception also where a value is out of range.
   static Film parse_header(const json& header) {
-    const auto demand = [](bool good, const char* what) {
-      if (!good) throw json::other_error::create(500, what, nullptr);
-    };
     Film film;
-    const auto sides = header.at("window").get<std::array<int, 6>>();
+    const json& sides = header.at("window");
+    const auto side = [&](std::size_t i) { return static_cast<int>(whole(sides.at(i), max_side)); };
     Window& w = film.window_;
-    w = {sides[0], sides[1], sides[2], sides[3], sides[4], sides[5]};
-    demand(0 <= w.x0 && w.x0 < w.x1 && w.x1 <= w.full_width, "bad window");
-    demand(0 <= w.y0 && w.y0 < w.y1 && w.y1 <= w.full_height, "bad window");
+    w = {side(0), side(1), side(2), side(3), side(4), side(5)};
+    demand(w.x0 < w.x1 && w.x1 <= w.full_width, "bad window");
+    demand(w.y0 < w.y1 && w.y1 <= w.full_height, "bad window");
     film.scale_ = header.at("scale").get<double>();
     demand(film.scale_ > 0 && std::isfinite(film.scale_), "bad scale");
     film.key = header.at("key").get<std::string>();
-    film.nonfinite_samples = header.at("nonfinite_samples").get<std::uint64_t>();
+    film.nonfinite_samples = whole(header.at("nonfinite_samples"));
     for (const json& index : header.at("replicates")) {
-      film.replicates_.push_back({index.get<std::uint64_t>(), {}, {}});
+      film.replicates_.push_back({whole(index), {}, {}});
       const std::size_t n = film.replicates_.size();
       demand(n == 1 || film.replicates_[n - 2].index < film.replicates_[n - 1].index, "bad replicates");
     }
     std::uint64_t end = 0;
     for (const json& range : header.at("samples")) {
-      const auto [first, count] = range.get<std::array<std::uint64_t, 2>>();
+      const std::uint64_t first = whole(range.at(0)), count = whole(range.at(1));
       demand(first >= end && count > 0 && first + count > first, "bad sample ranges");
       film.samples.push_back({first, count});
       end = first + count;

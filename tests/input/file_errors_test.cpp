@@ -72,6 +72,11 @@ Case forged(const std::string& name, const std::string& content, const std::stri
           name + ": " + message};
 }
 
+Case forged_film(const std::string& name, const std::string& window, const std::string& message) {
+  return forged(name, "castray film 1\n{\"window\": " + window + "}\n",
+                "has a corrupt header: [json.exception." + message);
+}
+
 void nothing(const Folder&) {}
 
 const std::vector<Case> cases = {
@@ -180,6 +185,11 @@ const std::vector<Case> cases = {
     forged("empty.exr", "", "cannot be read as OpenEXR"),
     forged("long.png", std::string("\x89PNG\r\n\x1a\n\x7f\xff\xff\xf0tEXt", 16) + std::string(20, 'x'),
            "is truncated or corrupt"),
+    forged_film("fractions.film", "[4, 4, 0, 0, 2.5, 2]", "other_error.500] bad number"),
+    forged_film("minus.film", "[4, 4, -1, 0, 2, 2]", "other_error.500] bad number"),
+    forged_film("huge.film", "[4, 4e105, 1, 1, 3, 3]", "other_error.500] bad number"),
+    forged_film("long.film", "[4294967300, 4, 0, 0, 4, 4]", "other_error.500] bad number"),
+    forged_film("few.film", "[4, 4]", "out_of_range.401] array index 2 is out of range"),
     {"images of different size",
      [](const Folder& f) { write(f.folder / "w.pfm", "PF\n1 1\n-1\n" + std::string(12, '\0')); },
      {"compare", "i.pfm", "w.pfm"},
