@@ -5,9 +5,8 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <CLI/CLI.hpp>
 
-#include "castray/error.h"
+#include "core/tool_main.h"
 #include "integrate/wavefront.h"
 #include "stress_checks.h"
 
@@ -136,25 +135,13 @@ int run(int argc, char** argv) {
   app.add_option("--threads", threads, "to build and trace with")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    return app.exit(success);
-  } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
-  }
-  omp_set_num_threads(threads);
-  return run_all(count, threads) ? 0 : 1;
+  return tool_main(app, argc, argv, [&] {
+    omp_set_num_threads(threads);
+    return run_all(count, threads) ? 0 : 1;
+  });
 }
 
 }  // namespace
 }  // namespace castray
 
-int main(int argc, char** argv) {
-  try {
-    return castray::run(argc, argv);
-  } catch (const castray::InputError& error) {
-    fmt::print(stderr, "castray-stress: error: {}\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return castray::run(argc, argv); }
