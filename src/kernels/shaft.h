@@ -28,8 +28,7 @@ CASTRAY_INLINE Float support(Vec a, Vec center, Vec half) {
   return dot(a, center) + fma(abs(a.x), half.x, fma(abs(a.y), half.y, abs(a.z) * half.z));
 }
 
-/// Without fused operations: the cross product of (b, a) is the exact negative of that of (a, b), so that no
-/// light passes between two facets that share the edge.
+/// Without fused operations: the exact negative for -b.
 CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
@@ -51,9 +50,11 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
   Float margin[corners];
   for (int k = 0; k < corners; ++k) {
     const Vec &from = corner[k], &to = corner[(k + 1) % corners];
-    const Vec e = antisymmetric_cross(from, to);
+    // Twice from x to, rounded in proportion to the edge's length, however near from and to are. For the
+    // facet on the edge's other side it is the exact negative: no light passes between the two.
+    const Vec sum = from + to, along = to - from, e = antisymmetric_cross(sum, along);
     edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
-    margin[k] = sum_abs(from) * sum_abs(to) * Float(0x1p-20f);
+    margin[k] = sum_abs(sum) * sum_abs(along) * Float(0x1p-21f);
     meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
   }
   if (none(meets)) return;

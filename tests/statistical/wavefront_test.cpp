@@ -86,13 +86,13 @@ Scene with_detail(Scene scene) {
   return scene;
 }
 
-/// Cornell's box with a hollowed ball of 5120 triangles below the light.
-Scene box_with_mesh() {
+/// Cornell's box with a hollowed ball of 20 times frequency^2 triangles.
+Scene box_with_mesh(std::uint32_t frequency = 16, double radius = 100,
+                    const Vec3d& middle = {278, 400, 280}) {
   Scene scene = standard_scene("cornell_box");
   const auto first = static_cast<std::uint32_t>(scene.positions.size());
-  const Shape ball = blob(16, 1);
-  for (const Vec3d& p : ball.positions)
-    scene.positions.push_back(Vec3f(scene.to_scene(p * 100 + Vec3d(278, 400, 280))));
+  const Shape ball = blob(frequency, 1);
+  for (const Vec3d& p : ball.positions) scene.positions.push_back(Vec3f(scene.to_scene(p * radius + middle)));
   for (const Index3& t : ball.triangles) {
     scene.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     scene.triangle_material.push_back(0);
@@ -256,6 +256,20 @@ TEST_CASE("the furnace closes on the wavefront, with each technique on and off",
           CHECK(std::abs(mean[c].mean() - wall.ke[c] / (1 - wall.kd[c])) < 4.5 * mean[c].error() + 1e-6);
         }
       }
+}
+
+// Triangles of a pixel or two: what widens the pyramids over them must be much less than they are.
+TEST_CASE("on fine meshes shared paths find the light that plain ones find", "[statistical]") {
+  for (const std::uint32_t frequency : {16u, 60u}) {
+    const Scene scene = box_with_mesh(frequency, 180, {278, 182, 280});
+    RenderOptions options = wavefront_options(4);
+    options.width = options.height = 512;
+    options.crop = Window{512, 512, 240, 240, 240 + side, 240 + side};  // on the ball
+    RenderOptions many = plain(options);
+    many.spp = 256;
+    many.sampler = SamplerKind::independent;
+    Expected(blocks_of(scene, many, 24)).check("frequency " + std::to_string(frequency), scene, options, 96);
+  }
 }
 
 TEST_CASE("a shared render has no bias that many seeds would show", "[statistical][long]") {
