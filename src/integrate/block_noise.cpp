@@ -39,22 +39,23 @@ BlockNoise::BlockNoise(const Film& a, const Film& b, const SampleMap& blocks) : 
   raise_the_least();
 }
 
-void BlockNoise::raise_the_least() {
+template <class Value>
+double BlockNoise::mean(Value value) const {
   double sum = 0, pixels = 0;
   for (std::size_t i = 0; i < noise_.size(); ++i) {
-    sum += noise_[i] * area(blocks_.block(i));
+    sum += value(i) * area(blocks_.block(i));
     pixels += area(blocks_.block(i));
   }
-  for (double& noise : noise_) noise = std::max(noise, least_noise * sum / pixels);
+  return sum / pixels;
+}
+
+void BlockNoise::raise_the_least() {
+  const double least = least_noise * mean([&](std::size_t i) { return noise_[i]; });
+  for (double& noise : noise_) noise = std::max(noise, least);
 }
 
 double BlockNoise::expected_error(const SampleMap& map) const {
-  double sum = 0, pixels = 0;
-  for (std::size_t i = 0; i < noise_.size(); ++i) {
-    sum += noise_[i] / static_cast<double>(map.count(i)) * area(map.block(i));
-    pixels += area(map.block(i));
-  }
-  return sum / pixels;
+  return mean([&](std::size_t i) { return noise_[i] / static_cast<double>(map.count(i)); });
 }
 
 double BlockNoise::expected_error(const Film& film) const {

@@ -29,6 +29,9 @@ class BlockNoise {
 
  private:
   void raise_the_least();
+  /// Over the image's pixels, of what each block i has.
+  template <class Value>
+  double mean(Value value) const;
   SampleMap planned(double samples_per_noise, std::uint64_t most) const;
 
   SampleMap blocks_;

@@ -54,19 +54,15 @@ CASTRAY_INLINE void list_closest_of_axis(const FacetList& list, const Vec& o, co
 /// The hits of `lanes` by the exact test.
 [[gnu::noinline, gnu::cold]] inline void settle(const ExactFacets& exact, const Vec& o, const Vec& d,
                                                 Mask lanes, ListHit& hit) {
-  alignas(64) float origin[3][width], direction[3][width], t[width];
+  alignas(64) float t[width];
   alignas(64) uint32_t facet[width];
-  for (int axis = 0; axis < 3; ++axis) {
-    store(origin[axis], axis == 0 ? o.x : axis == 1 ? o.y : o.z);
-    store(direction[axis], axis == 0 ? d.x : axis == 1 ? d.y : d.z);
-  }
   store(t, hit.t);
   store(facet, hit.facet);
   for (uint32_t left = bits(lanes); left; left &= left - 1) {
     const int l = __builtin_ctz(left);
-    const float from[3] = {origin[0][l], origin[1][l], origin[2][l]};
-    const float along[3] = {direction[0][l], direction[1][l], direction[2][l]};
-    exact.closest(exact.of, from, along, t[l], facet[l]);
+    const float origin[3] = {lane(o.x, l), lane(o.y, l), lane(o.z, l)};
+    const float direction[3] = {lane(d.x, l), lane(d.y, l), lane(d.z, l)};
+    exact.closest(exact.of, origin, direction, t[l], facet[l]);
   }
   hit.t = load(t);
   hit.facet = load(facet);

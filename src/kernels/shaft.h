@@ -35,6 +35,16 @@ CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
 
 CASTRAY_INLINE Float sum_abs(Vec a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
+/// Where a pyramid with these planes (see Shaft) meets the box.
+template <int corners>
+CASTRAY_INLINE Mask meets_box(const Vec (&edge)[corners], const Float (&margin)[corners], const Vec& normal,
+                              Float base, const Vec& center, const Vec& half) {
+  Mask meets = support(normal, center, half) > base;
+  for (int k = 0; k < corners; ++k)
+    meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
+  return meets;
+}
+
 /// Adds the facets with the given corners, relative to y, whose pyramid meets the box; `center` too is
 /// relative to y.
 template <int corners>
@@ -45,7 +55,6 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
                    flip_by_sign(normal.z, above)};
   const Float base =
       abs(above);  // the points in the box are off what they lie on by more than is rounded here
-  Mask meets = lanes & (support(beyond, center, half) > base);
   Vec edge[corners];
   Float margin[corners];
   for (int k = 0; k < corners; ++k) {
@@ -55,8 +64,8 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
     const Vec sum = from + to, along = to - from, e = antisymmetric_cross(sum, along);
     edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
     margin[k] = sum_abs(sum) * sum_abs(along) * Float(0x1p-21f);
-    meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
   }
+  const Mask meets = lanes & meets_box(edge, margin, beyond, base, center, half);
   if (none(meets)) return;
   const int n = out.count;
   for (int k = 0; k < corners; ++k) {
@@ -96,9 +105,14 @@ CASTRAY_INLINE int pyramids_of_part(const Shaft& s, const Vec& center, const Vec
     const auto at = [&](const float(&v)[3][max_blockers + 16]) {
       return Vec{load(v[0] + i), load(v[1] + i), load(v[2] + i)};
     };
-    Mask meets = first_lanes(s.count - i) & (support(at(s.normal), center, half) > load(s.base + i));
-    for (int k = 0; k < corners; ++k)
-      meets = meets & (support(at(s.edge[k]), center, half) + load(s.margin[k] + i) >= Float(0.f));
+    Vec edge[corners];
+    Float margin[corners];
+    for (int k = 0; k < corners; ++k) {
+      edge[k] = at(s.edge[k]);
+      margin[k] = load(s.margin[k] + i);
+    }
+    const Mask meets =
+        first_lanes(s.count - i) & meets_box(edge, margin, at(s.normal), load(s.base + i), center, half);
     compress_store(out + n, meets, Uint((uint32_t)i) + lane_index());
     n += count(meets);
   }
