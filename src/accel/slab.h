@@ -10,9 +10,10 @@ namespace castray {
 /// A ray prepared for boxes. Conservative: passes every box that holds a triangle that TriangleTest accepts,
 /// at an entry distance no greater than that triangle's t.
 ///
-/// TriangleTest moves a vertex sideways by at most 2u|X| + 4u|Z| (u half an ulp; X, Z the distances of the
-/// farthest vertex from the origin along this axis and along the main one), its weights are good to 4u and
-/// its t to 8u|Z|: together less than 32u(|X|+|Z|), by which every box grows. That, and the rounding of the
+/// TriangleTest moves a vertex along an axis by at most 2u|X| + 4u|S||Z|, and its t errs by 12u|Z|, which
+/// moves the ray's point by |S| of that (u half an ulp; X, Z the distances of the farthest vertex from the
+/// origin along this axis and along the main one; S what the ray moves along this axis for a step along the
+/// main one): together less than 3u|X| + 17u|S||Z|, by which every box grows. That, and the rounding of the
 /// slab's own arithmetic, 1 + 2 gamma(3), costs nothing per box: it is put into the origin and the reciprocal
 /// direction, which differ for near and far planes. Woop, Benthin, Wald (2013), section 3.3; Ize (2013).
 template <class T>
@@ -24,10 +25,12 @@ class SlabTest {
       const T o = ray.origin[i];
       return std::max(std::abs(T(lower[i]) - o), std::abs(T(upper[i]) - o));
     };
+    const T size = std::abs(ray.direction[main_axis]), reach_t = reach(main_axis) / size;
     for (int i = 0; i < 3; ++i) {
       const T inverse = 1 / ray.direction[i];
       negative_[i] = std::signbit(inverse);
-      const T grow = 32 * u * (reach(i) + reach(main_axis)) + 4 * u * std::abs(ray.origin[i]);
+      const T grow =
+          3 * u * reach(i) + 17 * u * std::abs(ray.direction[i]) * reach_t + 4 * u * std::abs(ray.origin[i]);
       near_origin_[i] = ray.origin[i] + (negative_[i] ? -grow : grow);
       far_origin_[i] = ray.origin[i] - (negative_[i] ? -grow : grow);
       near_inverse_[i] = inverse * (1 - rounding);

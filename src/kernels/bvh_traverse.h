@@ -26,9 +26,9 @@ CASTRAY_INLINE uint32_t enter_node(const WideNode& node, const RayGroup& group, 
   F8 near = zero, far = splat8(group.nearest[r]);
   for (int i = 0; i < 3; ++i) {
     const uint32_t plane = group.near_plane[i][r];
-    near = max8(near, about_mul_sub8(plane8(node, plane), splat8(group.near_inverse[i][r]),
-                                     splat8(group.near_offset[i][r])));
-    far = min8(far, about_mul_sub8(plane8(node, plane ^ far_plane_flip[i]), splat8(group.far_inverse[i][r]),
+    const F8 inverse = splat8(group.inverse[i][r]);
+    near = max8(near, about_mul_sub8(plane8(node, plane), inverse, splat8(group.near_offset[i][r])));
+    far = min8(far, about_mul_sub8(plane8(node, plane ^ far_plane_flip[i]), inverse,
                                    splat8(group.far_offset[i][r])));
   }
   return push_in_order(near, far, node.child, node.order[group.octant[r]], stack.t + size,

@@ -10,8 +10,8 @@ constexpr uint32_t group_size = 128;
 /// Rays prepared for boxes and triangles, each number of all rays side by side. The numerics are those of
 /// accel/slab.h and accel/triangle.h.
 struct RayGroup {
-  alignas(64) float near_inverse[3][group_size], near_offset[3][group_size];  // t = plane * inverse - offset
-  float far_inverse[3][group_size], far_offset[3][group_size];
+  alignas(64) float inverse[3][group_size];  // t = plane * inverse - offset
+  float near_offset[3][group_size], far_offset[3][group_size];
   float origin[3][group_size], direction_z[group_size];  // along the ray's own axes x, y and z, the longest
   float shear_x[group_size], shear_y[group_size];
   float nearest[group_size];           // the greatest t that is still of interest, inclusive
@@ -28,7 +28,6 @@ constexpr uint32_t far_plane_flip[3] = {0x60, 0xa0, 0xe0};
 CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& bvh, const Float (&o)[3],
                             const Float (&d)[3], Float t_max) {
   constexpr float half_ulp = 0x1p-24f;
-  constexpr float rounding = 2 * (3 * half_ulp / (1 - 3 * half_ulp));  // 2 gamma(3)
   const Float size = max(abs(d[0]), max(abs(d[1]), abs(d[2])));
   const Float place = max(abs(o[0]), max(abs(o[1]), abs(o[2])));
   const Float sum =
@@ -59,18 +58,18 @@ CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& 
   Float reach[3];
   for (int i = 0; i < 3; ++i)
     reach[i] = max(abs(Float(bvh.lower[i]) - o[i]), abs(Float(bvh.upper[i]) - o[i]));
-  const Float reach_z = along_z(reach[0], reach[1], reach[2]);
+  const Float reach_t = along_z(reach[0], reach[1], reach[2]) / size;
   Uint octant(0u);
   for (int i = 0; i < 3; ++i) {
     // A component this small moves the ray by less than the boxes have grown: a finite reciprocal will do.
     const Float inverse = Float(1.0f) / copy_sign(max(abs(d[i]), size * Float(0x1p-32f)), d[i]);
-    const Float grow =
-        copy_sign(Float(32 * half_ulp) * (reach[i] + reach_z) + Float(4 * half_ulp) * abs(o[i]), d[i]);
-    const Float near_inverse = inverse * Float(1 - rounding), far_inverse = inverse * Float(1 + rounding);
-    store(group.near_inverse[i] + first, near_inverse);
-    store(group.far_inverse[i] + first, far_inverse);
-    store(group.near_offset[i] + first, (o[i] + grow) * near_inverse);
-    store(group.far_offset[i] + first, (o[i] - grow) * far_inverse);
+    // As SlabTest, but 2 gamma(3) of the distance to the farthest plane instead of to each: one reciprocal.
+    const Float grow = copy_sign(Float(9 * half_ulp) * reach[i] + Float(4 * half_ulp) * abs(o[i]) +
+                                     Float(17 * half_ulp) * max(abs(d[i]), size * Float(0x1p-8f)) * reach_t,
+                                 d[i]);
+    store(group.inverse[i] + first, inverse);
+    store(group.near_offset[i] + first, (o[i] + grow) * inverse);
+    store(group.far_offset[i] + first, (o[i] - grow) * inverse);
     const Uint negative = as_uint(d[i]) >> 31;
     constexpr uint32_t plane = bvh_width * sizeof(float);
     store(group.near_plane[i] + first, Uint((uint32_t)i * plane) + negative * Uint(3 * plane));
