@@ -152,6 +152,23 @@ bool can_block(const Facet& f, const Scene& scene) {
   return below < -f.error && above > f.error;
 }
 
+/// How far a point on a light of triangles may be from where a ray/triangle test finds it: the rounding of an
+/// interpolated point and what the test itself errs from there (see point_on_triangle in
+/// core/error_bounds.h). Unlike that of a facet it does not grow with the scene.
+double light_error(const Facet& f) {
+  Corners corners;
+  for (const auto& c : f.corner) corners.push_back({c[0], c[1], c[2]});
+  const Vec3d n{f.normal[0], f.normal[1], f.normal[2]};
+  double deviation = 0, extent = 0;
+  Vec3d size;
+  for (const Vec3d& p : corners) {
+    deviation = std::max(deviation, distance_to_plane(corners, p));
+    extent = std::max(extent, max_component(magnitude(p - corners[0])));
+    for (int c = 0; c < 3; ++c) size[c] = std::max(size[c], std::abs(p[c]));
+  }
+  return deviation + dot(magnitude(n), size * (9 * ulp) + Vec3d(extent * (24 * ulp)));
+}
+
 FacetList view(const std::vector<Facet>& facets) {
   FacetList list{facets.data(), {}, {}};
   for (const Facet& f : facets)
@@ -212,6 +229,10 @@ void FacetsInDouble::closest(const void* self, const float origin[3], const floa
   facet = hit.found() ? facets.facet_of_[hit.triangle] : Scene::no_index;
 }
 
-std::vector<Facet> emitting_facets(const Scene& scene) { return merge_triangles(scene, scene.lights); }
+std::vector<Facet> emitting_facets(const Scene& scene) {
+  std::vector<Facet> facets = merge_triangles(scene, scene.lights);
+  for (Facet& f : facets) f.error = static_cast<float>(light_error(f));
+  return facets;
+}
 
 }  // namespace castray

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/covered_lights.h"
 #include "shading/ggx.h"
 #include "shading/lobe_albedo.h"
 
@@ -187,7 +188,9 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   } else {
     bvh = WideBvh::build(mesh_of(scene), threads, plan.build);
     material_words = pack_materials(scene);
-    lights = shapes_of_lights(emitting_facets(scene), scene);
+    const std::vector<Facet> emitting = emitting_facets(scene);
+    lights = shapes_of_lights(emitting, scene);
+    view.lights.may_be_covered = may_be_covered(scene, emitting);
     view.bvh = bvh->view();
     view.triangles = triangle_table(scene, material_words);
   }

@@ -8,10 +8,10 @@
 
 namespace castray {
 
-/// The error bound of a light point as the end of `segment`: its triangle is tested from the far end.
+/// The error bound of a surface point as the far end of `segment`: its triangle is tested from the other end.
 template <class T>
-Vec3<T> target_error(const LightPoint<T>& y, const Vec3<T>& segment) {
-  return y.error + error_of_test(max_component(magnitude(segment)));
+Vec3<T> far_error(const Surface<T>& x, const Vec3<T>& segment) {
+  return x.error + error_of_test(max_component(magnitude(segment)));
 }
 
 /// Where rays start and which segments are free: by the hits' own error bounds, or, for comparison, by the
@@ -34,17 +34,20 @@ struct Segments {
   }
 
   /// Whether nothing lies between x and y: the segment between both offset points is free, t < 1 on the
-  /// unnormalised vector. Classic: the first thing hit towards y is within epsilon of y.
+  /// unnormalised vector. It is traced from the light: an origin is known to its own error, a far end to one
+  /// that grows with the distance, and what is so near to x that it might be missed would have kept the path
+  /// from x. Classic: the first thing hit from x towards y is within epsilon of y.
   template <class Accel>
   bool visible(const Accel& accel, const Surface<T>& x, const LightPoint<T>& y) const {
     const Vec3<T> towards = y.p - x.p;
-    const Vec3<T> from = origin(x, towards);
     if (epsilon) {
+      const Vec3<T> from = origin(x, towards);
       const Ray<T> ray{from, normalize(y.p - from)};
       const Hit<T> hit = accel.closest(ray);
       return hit.found() && length(y.p - (from + ray.direction * hit.t)) < static_cast<T>(*epsilon);
     }
-    const Vec3<T> to = offset_origin(y.p, target_error(y, towards), y.normal, -towards);
+    const Vec3<T> from = offset_origin(y.p, y.error, y.normal, -towards);
+    const Vec3<T> to = offset_origin(x.p, far_error(x, towards), x.normal, towards);
     return !accel.occluded(Ray<T>{from, to - from, T(1)});
   }
 };
@@ -53,7 +56,7 @@ struct Segments {
 /// and cos cos' / |x' - x|^2 would be the quotient of two rounding errors.
 template <class T>
 bool in_one_plane(const Surface<T>& x, const LightPoint<T>& y, const Vec3<T>& segment) {
-  const Vec3<T> error = x.error + target_error(y, segment);
+  const Vec3<T> error = far_error(x, segment) + y.error;
   const auto within_error = [&](const Vec3<T>& n) {
     return std::abs(dot(n, segment)) <= dot(magnitude(n), error);
   };

@@ -105,6 +105,7 @@ struct LightList {
   const LightBounds* cut;   ///< nodes that hold all lights, each once
   const LightBounds* tree;  ///< pairs of siblings
   bool by_solid_angle;      ///< points are uniform in solid angle where that can be had
+  bool may_be_covered;      ///< something may lie too close in front of one to be seen from afar
 };
 
 /// Sample (px,py) of the full image looks along corner + px * dx + py * dy.

@@ -73,11 +73,11 @@ CASTRAY_INLINE void add_packets(const TrianglePacket* const (&packets)[packets_a
     Vec corner[3];
     for (int v = 0; v < 3; ++v) {
       const auto &first = packets[0]->vertex[v], &last = packets[count - 1]->vertex[v];
-      corner[v] = Vec{load_octets(first[0] + k, last[0]), load_octets(first[1] + k, last[1]),
-                      load_octets(first[2] + k, last[2])} -
-                  y;
+      corner[v] = {load_octets(first[0] + k, last[0]), load_octets(first[1] + k, last[1]),
+                   load_octets(first[2] + k, last[2])};
     }
     const Vec normal = antisymmetric_cross(corner[1] - corner[0], corner[2] - corner[0]);
+    for (Vec& v : corner) v = v - y;
     add_pyramids(corner, normal, center, half, first_lanes(count * lanes), out);
   }
 }

@@ -114,7 +114,9 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& t
     const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
     const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
     compress_store(s.o, n, open, y.p);
-    compress_store(s.d, n, open, load(tile.x.p, tile.first + i * width) - y.p);
+    const int entry = tile.first + i * width;
+    compress_store(s.d, n, open,
+                   far_end<feature_bvh>(load(tile.x.p, entry), load(tile.x.normal, entry), y.p) - y.p);
     compress_store(s.pixel + n, open, pixel);
     n += count(open);
   }

@@ -87,10 +87,23 @@ CASTRAY_INLINE HitPoint facet_point(const KernelScene& scene, const Vec& o, cons
           gather(&facet.material, record) * uint32_t{material_floats}};
 }
 
+/// Error along `normal` that a ray/triangle test adds where the triangle reaches `distance`, the greatest of
+/// its coordinates, from the ray's origin (error_of_test in core/error_bounds.h).
+CASTRAY_INLINE Float error_of_test(Float distance, const Vec& normal) {
+  return distance * sum_abs(normal) * Float(24 * 0x1p-24f);
+}
+
+/// The far end of a segment that begins at `from`: p, which is off its surface by its own error to the side
+/// of `normal`, moved on by the error of a test from so far. A facet's error has that in it.
+template <uint32_t features>
+CASTRAY_INLINE Vec far_end(const Vec& p, const Vec& normal, const Vec& from) {
+  if constexpr (!(features & feature_bvh)) return p;
+  return fma(normal, error_of_test(max_component(magnitude(p - from)), normal), p);
+}
+
 /// The point from its barycentrics. The error of each coordinate is at most gamma(7) times the sum of the
-/// terms' magnitudes, and one rounding more for the step along the normal; the ray/triangle test adds its own
-/// (error_of_test in core/error_bounds.h), without which triangles in the plane of an axis would shadow
-/// themselves.
+/// terms' magnitudes, and one rounding more for the step along the normal; the ray/triangle test adds its
+/// own, without which triangles in the plane of an axis would shadow themselves.
 CASTRAY_INLINE HitPoint triangle_point(const KernelScene& scene, Float b1, Float b2, Uint primitive) {
   const TriangleTable& table = scene.triangles;
   const Corners corners = corners_of(table.corners, primitive);
@@ -102,12 +115,9 @@ CASTRAY_INLINE HitPoint triangle_point(const KernelScene& scene, Float b1, Float
       Vec{fma(e1.y, e2.z, -(e1.z * e2.y)), fma(e1.z, e2.x, -(e1.x * e2.z)), fma(e1.x, e2.y, -(e1.y * e2.x))});
   const Float b0 = Float(1.f) - b1 - b2;
   const Vec p0 = v0 * b0, p1 = v1 * b1, p2 = v2 * b2;
-  const Vec size{abs(p0.x) + abs(p1.x) + abs(p2.x), abs(p0.y) + abs(p1.y) + abs(p2.y),
-                 abs(p0.z) + abs(p1.z) + abs(p2.z)};
-  const Vec slope{abs(normal.x), abs(normal.y), abs(normal.z)};
-  const Vec reach{max(abs(e1.x), abs(e2.x)), max(abs(e1.y), abs(e2.y)), max(abs(e1.z), abs(e2.z))};
-  const Float test_error = max_component(reach) * (slope.x + slope.y + slope.z);
-  const Float error = fma(dot(slope, size), Float(9 * 0x1p-24f), test_error * Float(24 * 0x1p-24f));
+  const Vec size = magnitude(p0) + magnitude(p1) + magnitude(p2);
+  const Float extent = max(max_component(magnitude(e1)), max_component(magnitude(e2)));
+  const Float error = fma(dot(magnitude(normal), size), Float(9 * 0x1p-24f), error_of_test(extent, normal));
   const Uint word = gather(table.materials, primitive >> 1);
   const Uint id = select((primitive & 1u) == Uint(1u), word >> 16, word & 0xffffu);
   return {p0 + p1 + p2, normal, error, id * uint32_t{material_floats}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kernels/geometry.h"
 #include "kernels/light_choice.h"
 #include "kernels/rectangle.h"
 
@@ -84,6 +85,7 @@ CASTRAY_INLINE LightPoint sample_light(const LightList& list, const Receiver& re
 struct LightSegment {
   Vec towards;  ///< from p to the point, not of unit length
   Vec end;      ///< the point moved off the light by its error, to p's side
+  Vec normal;   ///< of the light, to p's side
   Float inverse_distance;
   Float solid_angle;  ///< cos' / |x' - x|^2; zero where the light faces away
 };
@@ -93,8 +95,25 @@ CASTRAY_INLINE LightSegment connect_light(const LightPoint& light, const Vec& p)
   const Float cos_light = select(light.two_sided, abs(facing), max(facing, Float(0.f)));
   const Float distance2 = length_squared(towards);
   const Float inverse = Float(1.f) / sqrt(max(distance2, Float(0x1p-100f)));
-  return {towards, fma(light.normal, copy_sign(light.error, facing), light.p), inverse,
+  const Vec normal{flip_by_sign(light.normal.x, facing), flip_by_sign(light.normal.y, facing),
+                   flip_by_sign(light.normal.z, facing)};
+  return {towards, fma(normal, light.error, light.p), normal, inverse,
           cos_light * inverse * inverse * inverse};
+}
+
+/// A segment as it is traced.
+struct Segment {
+  Vec o, d;
+};
+
+/// The segment between a light point and p, which is off its surface, on the side of `normal`. It begins at
+/// the light if something may lie close to that: an origin is known to its own error, a far end to one that
+/// grows with the distance. What is as close to p would have kept the path from it.
+template <uint32_t features>
+CASTRAY_INLINE Segment to_trace(const LightList& lights, const LightSegment& light, const Vec& p,
+                                const Vec& normal) {
+  if (lights.may_be_covered) return {light.end, far_end<features>(p, normal, light.end) - light.end};
+  return {p, far_end<features>(light.end, light.normal, p) - p};
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -271,14 +271,15 @@ CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& 
   for (int i = 0; i < y.count; i += width) {
     const Mask active = first_lanes(y.count - i);
     const LightPoint point = vertex_light_point<features>(c, y, i, 1);
-    const Vec p = load(y.p, i);
+    const Vec p = load(y.p, i), normal = load(y.normal, i);
     const LightSegment segment = connect_light(point, p);
     const Vec wi = segment.towards * segment.inverse_distance;
-    const Mask lit = active & (segment.solid_angle > Float(0.f)) & (dot(load(y.normal, i), wi) > Float(0.f)) &
+    const Mask lit = active & (segment.solid_angle > Float(0.f)) & (dot(normal, wi) > Float(0.f)) &
                      (dot(load(y.shading_normal, i), wi) > Float(0.f));
     const int n = out.count;
-    compress_store(out.o, n, lit, p);
-    compress_store(out.d, n, lit, segment.end - p);
+    const Segment traced = to_trace<features>(lights, segment, p, normal);
+    compress_store(out.o, n, lit, traced.o);
+    compress_store(out.d, n, lit, traced.d);
     compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);
     compress_store(out.slot + n, lit, load(y.names.slot + i) + Uint((uint32_t)batch_size));
     out.count += count(lit);

@@ -33,8 +33,6 @@ CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-CASTRAY_INLINE Float sum_abs(Vec a) { return abs(a.x) + abs(a.y) + abs(a.z); }
-
 /// Where a pyramid with these planes (see Shaft) meets the box.
 template <int corners>
 CASTRAY_INLINE Mask meets_box(const Vec (&edge)[corners], const Float (&margin)[corners], const Vec& normal,
@@ -53,8 +51,10 @@ CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal
   const Float above = dot(normal, corner[0]);
   const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
                    flip_by_sign(normal.z, above)};
-  const Float base =
-      abs(above);  // the points in the box are off what they lie on by more than is rounded here
+  // A point of the box on the facet must not be hidden by it, however its distance from the plane and this
+  // one are rounded: 4u of the terms each.
+  const Vec size = magnitude(normal), reach = magnitude(center) + half;
+  const Float base = fma(dot(size, reach), Float(0x1p-21f), abs(above));
   Vec edge[corners];
   Float margin[corners];
   for (int k = 0; k < corners; ++k) {

@@ -175,6 +175,12 @@ CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, i
           load(v.normal, i)};
 }
 
+/// The normal on wi's side.
+CASTRAY_INLINE Vec normal_towards(const Vertices& v, int i, Vec wi) {
+  const Vec normal = load(v.normal, i);
+  return select(dot(wi, normal) < Float(0.f), -normal, normal);
+}
+
 /// Where a ray in direction `wi` leaves a vertex: a point on wi's side.
 CASTRAY_INLINE Vec leave(const Vertices& v, int i, Vec wi) {
   const Vec p = load(v.p, i), normal = load(v.normal, i);
@@ -208,7 +214,7 @@ CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t v
     const LightPoint point = vertex_light_point<features>(c, vertices, i, vertex);
     const LightSegment segment = connect_light(point, load(vertices.p, i));
     const Vec wi = segment.towards * segment.inverse_distance;
-    Vec o = load(vertices.p, i), f_cos;
+    Vec p = load(vertices.p, i), normal = load(vertices.normal, i), f_cos;
     Float pdf(0.f);
     if constexpr (features & feature_materials) {
       const Shading shading = shading_of(c.scene, vertices, i);
@@ -216,9 +222,10 @@ CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t v
       const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
       f_cos = select(shading.consistent(wi, local), value.f_cos, black());
       pdf = value.pdf;
-      o = leave(vertices, i, wi);
+      p = leave(vertices, i, wi);
+      normal = normal_towards(vertices, i, wi);
     } else {
-      pdf = max(dot(load(vertices.normal, i), wi), Float(0.f)) * Float(1.f / pi);
+      pdf = max(dot(normal, wi), Float(0.f)) * Float(1.f / pi);
       f_cos = load(vertices.albedo, i) * pdf;
     }
     const Float share = c.options.mis
@@ -227,8 +234,9 @@ CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t v
     const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
     const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;
-    compress_store(out.o, n, lit, o);
-    compress_store(out.d, n, lit, segment.end - o);
+    const Segment traced = to_trace<features>(lights, segment, p, normal);
+    compress_store(out.o, n, lit, traced.o);
+    compress_store(out.d, n, lit, traced.d);
     compress_store(out.radiance, n, lit, radiance);
     compress_store(out.slot + n, lit, load(vertices.names.slot + i));
     out.count += count(lit);

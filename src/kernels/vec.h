@@ -28,6 +28,8 @@ CASTRAY_INLINE Vec fma_vec(Vec a, Vec b, Vec c) {
 CASTRAY_INLINE Vec select(Mask m, Vec a, Vec b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
+CASTRAY_INLINE Vec magnitude(Vec a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
+CASTRAY_INLINE Float sum_abs(Vec a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 CASTRAY_INLINE Float max_component(Vec a) { return max(a.x, max(a.y, a.z)); }
 CASTRAY_INLINE Float luminance(Vec c) {
   return fma(c.x, Float(0.2126f), fma(c.y, Float(0.7152f), c.z * Float(0.0722f)));

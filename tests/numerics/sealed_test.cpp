@@ -146,15 +146,15 @@ void check_segments(const std::string& what, const TwoSpheres& spheres, Which wh
 
 }  // namespace
 
-// A ray's origin is pushed by the error of its own triangle, which grows with the triangle's size; the end of
-// a segment to a light by an error that grows with the segment's length.
+// The origin of a ray, or of a segment from a light, is pushed by the error of its own triangle, which grows
+// with the triangle's size.
 TEST_CASE("of two spheres a millionth apart, each hides what is behind the other") {
   check_origins("small triangles", {icosphere(16), 1e-6});
   check_origins("large triangles", {icosphere(1), 2e-5});
 }
 
 TEST_CASE("of two spheres, one shining away from the other, no light reaches the other's far side") {
-  check_segments("small triangles", {icosphere(8), 2e-5});
+  check_segments("small triangles", {icosphere(16), 1e-6});
   check_segments("large triangles", {icosphere(1), 2e-5});
   check_segments("in double", {icosphere(1), 1e-6}, Which::double_precision);
 }

@@ -272,6 +272,38 @@ TEST_CASE("on fine meshes shared paths find the light that plain ones find", "[s
   }
 }
 
+namespace {
+
+/// A ball of a hundredth of the scene's size under a lamp.
+Scene small_ball(std::uint32_t frequency) {
+  SceneSketch sketch;
+  const auto white = sketch.add_material({.name = "white", .kd = Vec3d(0.8)});
+  const auto lamp = sketch.add_material({.name = "lamp", .kd = {}, .ke = Vec3d(1)});
+  sketch.add_quad({-1, 1, -1}, {1, 1, -1}, {1, 1, 1}, {-1, 1, 1}, lamp);
+  sketch.add_quad({-1, -1, 1}, {1, -1, 1}, {1, -1, -1}, {-1, -1, -1}, white);
+  const Shape ball = icosphere(frequency);
+  sketch.add_mesh(ball.positions, ball.triangles, 0.01, {}, false, white);
+  sketch.scene.camera = make_camera({0.04, 0.06, 0.08}, {}, {0, 1, 0}, 12);
+  return sketch.scene;
+}
+
+}  // namespace
+
+// Found from afar, its triangles are off by as much as its points are off them: with 1280 triangles by
+// shafts, with 20480 by rays.
+TEST_CASE("a small mesh does not hide its own points from what lights a tile", "[statistical]") {
+  for (const std::uint32_t frequency : {8u, 32u}) {
+    const Scene scene = small_ball(frequency);
+    const Expected expected(scene);
+    for (const Switch mis : {Switch::on, Switch::off}) {
+      RenderOptions options = wavefront_options(4);
+      options.mis = mis;
+      expected.check("shared, " + std::to_string(frequency), scene, options, 96);
+      expected.check("plain, " + std::to_string(frequency), scene, plain(options), 96);
+    }
+  }
+}
+
 TEST_CASE("a shared render has no bias that many seeds would show", "[statistical][long]") {
   for (const char* name : {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights"}) {
     const Scene scene = standard_scene(name);
