@@ -63,14 +63,19 @@ void test_leaks(Table& table, const ClosedShape& closed, double scale, double of
             count_leaks(Bvh::build(mesh.view(), threads), double_rays));
 }
 
-/// A list takes time in proportion to its length.
-void test_leaks_of_list(Table& table, double scale, double offset, std::size_t count) {
-  const ClosedShape closed = closed_icosphere(2);
+/// The reference's list, and the kernels' of facets, which scenes of up to 64 triangles get.
+void test_leaks_of_lists(Table& table, const ClosedShape& closed, double scale, double offset,
+                         std::size_t count) {
   const FloatMesh mesh = place(closed.shape, scale, offset);
-  const auto list = make_tracer("list", mesh.view(), choose_kernel("auto"));
-  list->build(1);
   const auto rays = rays_at_seams<float>(closed, mesh, scale, offset, count, 3);
-  table.add("leaks, 80 triangles", list->name(), scale, offset, count, count_leaks(*list, rays));
+  std::vector<std::unique_ptr<Tracer>> lists;
+  lists.push_back(make_tracer("list", mesh.view(), choose_kernel("auto")));
+  for (const KernelApi* kernel : available_kernels())
+    lists.push_back(make_tracer("facets", mesh.view(), *kernel));
+  for (const auto& list : lists) {
+    list->build(1);
+    table.add("leaks, few, " + closed.name, list->name(), scale, offset, count, count_leaks(*list, rays));
+  }
 }
 
 void test_agreement(Table& table, const std::string& name, const Shape& shape, double scale, double offset,
@@ -113,8 +118,10 @@ bool run_all(std::size_t count, int threads) {
     for (const double offset : offsets)
       test_leaks(table, closed, 1, offset, count / (offset < 1e6 ? 10 : 100), threads);
   }
-  for (const double scale : {1e-6, 1.0, 1e6}) test_leaks_of_list(table, scale, 0, count / 10);
-  test_leaks_of_list(table, 1, 1e6, count / 10);
+  for (const ClosedShape& closed : {closed_icosphere(1), closed_sliver_sphere(10, 3)}) {
+    for (const double scale : {1e-6, 1.0, 1e6}) test_leaks_of_lists(table, closed, scale, 0, count / 10);
+    test_leaks_of_lists(table, closed, 1, 1e6, count / 10);
+  }
   for (const std::string name : {"blob", "torus_knot", "terrain", "hair", "soup", "sticks"}) {
     const Shape shape = make_shape(name, name == "sticks" ? 2000 : 20000, 1);  // a ray meets many sticks
     for (const double scale : {1e-6, 1.0, 1e6})

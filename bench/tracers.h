@@ -23,7 +23,8 @@ class Tracer {
                         std::uint8_t* occluded) const = 0;
 };
 
-/// `accel`: wide, bvh2 or list; `kernel` and `quality` are for wide.
+/// `accel`: wide, bvh2, list, or facets, which tells whether something is hit but not which triangle;
+/// `kernel` is for wide and facets, `quality` for wide.
 std::unique_ptr<Tracer> make_tracer(const std::string& accel, const MeshView& mesh, const KernelApi& kernel,
                                     BuildQuality quality = BuildQuality::fast);
 

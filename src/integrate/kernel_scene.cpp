@@ -201,7 +201,6 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   view.texture_count = static_cast<std::uint32_t>(textures.size());
   view.camera = make_kernel_camera(scene.camera, width, height);
   put(view.environment, scene.environment);
-  view.slack = 0x1p-20f;
   view.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
 }
 

@@ -147,6 +147,10 @@ struct FirstHits {
   bool known;  ///< otherwise they are to be found, and nothing rendered
 };
 
+/// Bound of the distance by which rounding moves a ray of unit direction that starts in the scene past a
+/// facet's edge, and of the product of that and a segment's length.
+inline constexpr float list_slack = 0x1p-20f, segment_slack = 4 * list_slack;
+
 struct KernelScene {
   FacetList facets;    ///< all of the scene, if there is no tree
   FacetList blockers;  ///< those that can lie between two points of the scene
@@ -161,9 +165,7 @@ struct KernelScene {
   KernelCamera camera;
   FirstHits first_hits;
   float environment[3];
-  float camera_slack;  ///< list test: bound of the distance by which rounding moves a camera ray past a
-                       ///< facet's edge
-  float slack;         ///< the same for rays that start in the scene
+  float camera_slack;  ///< list_slack for rays from the camera
 };
 
 struct KernelOptions {
@@ -219,6 +221,10 @@ struct KernelApi {
   void (*sample_block)(bool sobol, uint32_t key, uint32_t index, uint32_t block, float* u);
   void (*bvh_closest)(const WideBvhView&, const RayBatch&);      ///< the nearest hit of every ray
   void (*bvh_occluded)(const WideBvhView&, const ShadowBatch&);  ///< whether each ray hits anything
+  /// The same over a list, with list_slack or segment_slack: t and facet of the nearest; whether one is at 0
+  /// < t < 1.
+  void (*facets_closest)(const FacetList&, float slack, const RayBatch&);
+  void (*facets_occluded)(const FacetList&, float slack, const ShadowBatch&);
 };
 
 namespace scalar {

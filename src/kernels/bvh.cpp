@@ -12,14 +12,6 @@ struct Hits {
   float *b1, *b2;
 };
 
-/// `width` numbers from `i` on, zeros behind the last.
-Float load_padded(const float* from, uint32_t i, uint32_t count) {
-  if (i + width <= count) return load(from + i);
-  float padded[width] = {};
-  for (uint32_t l = 0; i + l < count; ++l) padded[l] = from[i + l];
-  return load(padded);
-}
-
 template <bool any, class Batch>
 CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t first, uint32_t count,
                           RayGroup& group, float* stack_t, uint32_t* stack_child, const Hits& hits) {

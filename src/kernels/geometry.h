@@ -28,7 +28,7 @@ CASTRAY_INLINE void closest(Context& c, const Paths& paths, const FarEnds& ends,
     bvh_closest(c.scene.bvh, {paths.o.x, paths.o.y, paths.o.z, paths.d.x, paths.d.y, paths.d.z, ends.infinite,
                               hits.t, hits.primitive, hits.b1, hits.b2, (uint32_t)paths.count});
   } else {
-    const Float slack(from_camera ? c.scene.camera_slack : c.scene.slack);
+    const Float slack(from_camera ? c.scene.camera_slack : list_slack);
     for (int i = 0; i < paths.count; i += width) {
       const ListHit hit = list_closest(c.scene.facets, load(paths.o, i), load(paths.d, i), slack);
       store(hits.t + i, hit.t);
@@ -51,7 +51,7 @@ CASTRAY_INLINE void add_unblocked(Context& c, const FarEnds& ends, ShadowRays& r
       radiance.z[rays.slot[i]] += rays.radiance.z[i];
     }
   } else {
-    const Float slack(4 * c.scene.slack);  // segments may be longer than 1
+    const Float slack(segment_slack);
     for (int i = 0; i < rays.count; i += width) {
       const Mask blocked = list_occluded(c.scene.blockers, load(rays.o, i), load(rays.d, i), slack);
       radiance.add(rays.slot + i, first_lanes(rays.count - i) & ~blocked, load(rays.radiance, i));

@@ -298,4 +298,12 @@ CASTRAY_INLINE Float copy_sign(Float a, Float sign) {
 CASTRAY_INLINE float lane(Float a, int l) { return a.v[l]; }
 CASTRAY_INLINE uint32_t lane(Uint a, int l) { return a.v[l]; }
 
+/// `width` numbers from `i` on, zeros behind the last.
+CASTRAY_INLINE Float load_padded(const float* from, uint32_t i, uint32_t count) {
+  if (i + width <= count) return load(from + i);
+  alignas(64) float padded[width] = {};
+  for (uint32_t l = 0; i + l < count; ++l) padded[l] = from[i + l];
+  return load(padded);
+}
+
 }  // namespace castray::CASTRAY_ISA

@@ -1,4 +1,5 @@
 #include "kernels/bvh.h"
+#include "kernels/facets.h"
 #include "kernels/render_tiles.h"
 #include "kernels/tiles.h"
 
@@ -24,7 +25,9 @@ const KernelApi& kernel_api() {
                               render_tiles_bvh, nullptr, nullptr, nullptr, render_tiles_bvh_detail},
                              sample_block,
                              bvh_closest,
-                             bvh_occluded};
+                             bvh_occluded,
+                             facets_closest,
+                             facets_occluded};
   return api;
 }
 

@@ -13,6 +13,8 @@ std::vector<std::unique_ptr<Tracer>> all_tracers(const MeshView& mesh) {
   for (const KernelApi* kernel : kernels) tracers.push_back(make_tracer("wide", mesh, *kernel));
   tracers.push_back(make_tracer("bvh2", mesh, *kernels[0]));
   if (mesh.count < 1000) tracers.push_back(make_tracer("list", mesh, *kernels[0]));
+  if (mesh.count <= 64)
+    for (const KernelApi* kernel : kernels) tracers.push_back(make_tracer("facets", mesh, *kernel));
   for (const auto& tracer : tracers) tracer->build(1);
   return tracers;
 }
@@ -29,7 +31,8 @@ void check_closed(const ClosedShape& closed, double scale, double offset, std::s
 }
 
 void check_all_closed(std::size_t rays) {
-  const std::vector<ClosedShape> shapes = {closed_icosphere(5), closed_icosphere(24),
+  const std::vector<ClosedShape> shapes = {closed_icosphere(1),        closed_sliver_sphere(10, 3),
+                                           closed_icosphere(5),        closed_icosphere(24),
                                            closed_torus_knot(200, 12), closed_sliver_sphere(50, 30)};
   for (const ClosedShape& closed : shapes) {
     for (const double scale : {1e-6, 1.0, 1e6}) check_closed(closed, scale, 0, rays);
