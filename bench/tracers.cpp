@@ -5,7 +5,6 @@
 #include "accel/list.h"
 #include "accel/wide_bvh.h"
 #include "castray/error.h"
-#include "core/error_bounds.h"
 #include "integrate/facets.h"
 #include "integrate/wavefront.h"
 #include "scene/scene_builder.h"
@@ -24,11 +23,12 @@ class WideTracer : public Tracer {
     return bvh_.stats();
   }
   void closest(const RayArrays& rays, std::size_t first, std::size_t count, Hit<float>* hits) const override {
-    rays.closest(kernel_, bvh_.view(), first, count, hits);
+    rays.closest([&](const RayBatch& batch) { kernel_.bvh_closest(bvh_.view(), batch); }, first, count, hits);
   }
   void occluded(const RayArrays& rays, std::size_t first, std::size_t count,
                 std::uint8_t* occluded) const override {
-    rays.occluded(kernel_, bvh_.view(), first, count, occluded);
+    rays.occluded([&](const ShadowBatch& batch) { kernel_.bvh_occluded(bvh_.view(), batch); }, first, count,
+                  occluded);
   }
 
  private:
@@ -61,44 +61,30 @@ class FacetTracer : public Tracer {
     return {.triangles = mesh_.count};
   }
   void closest(const RayArrays& rays, std::size_t first, std::size_t count, Hit<float>* hits) const override {
-    const Local local(*this, rays, first, count, 1);
-    std::vector<float> t(count);
-    std::vector<std::uint32_t> facet(count);
-    const auto& n = local.number;
     FacetList list = facets_.list();
     list.exact = exact_->view();
-    kernel_.facets_closest(
-        list, list_slack,
-        {n[0].data(), n[1].data(), n[2].data(), n[3].data(), n[4].data(), n[5].data(), nullptr, t.data(),
-         facet.data(), nullptr, nullptr, static_cast<std::uint32_t>(count)});
-    for (std::size_t i = 0; i < count; ++i) hits[i] = {t[i], facet[i], 0, 0};
+    in_scene(rays, first, count, 1)
+        .closest([&](const RayBatch& batch) { kernel_.facets_closest(list, list_slack, batch); }, 0, count,
+                 hits);
   }
   void occluded(const RayArrays& rays, std::size_t first, std::size_t count,
                 std::uint8_t* occluded) const override {
-    const Local local(*this, rays, first, count, 4);  // longer than any segment in the scene
-    const auto& n = local.number;
-    kernel_.facets_occluded(facets_.list(), segment_slack,
-                            {n[0].data(), n[1].data(), n[2].data(), n[3].data(), n[4].data(), n[5].data(),
-                             nullptr, occluded, static_cast<std::uint32_t>(count)});
+    in_scene(rays, first, count, 4)  // longer than any segment in the scene
+        .occluded(
+            [&](const ShadowBatch& batch) { kernel_.facets_occluded(facets_.list(), segment_slack, batch); },
+            0, count, occluded);
   }
 
  private:
   /// Rays in scene space, with directions of the given length.
-  struct Local {
-    std::vector<float> number[6];
-
-    Local(const FacetTracer& tracer, const RayArrays& rays, std::size_t first, std::size_t count,
-          double norm) {
-      for (std::size_t i = first; i < first + count; ++i) {
-        const Vec3d o = tracer.scene_.to_scene(Vec3d(rays[i].origin)), d(rays[i].direction);
-        const Vec3d scaled = normalize(d) * norm;
-        for (int c = 0; c < 3; ++c) {
-          number[c].push_back(static_cast<float>(o[c]));
-          number[3 + c].push_back(static_cast<float>(scaled[c]));
-        }
-      }
+  RayArrays in_scene(const RayArrays& rays, std::size_t first, std::size_t count, double norm) const {
+    RayArrays moved;
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Ray<float> ray = rays[i];
+      moved.add({Vec3f(scene_.to_scene(Vec3d(ray.origin))), Vec3f(normalize(Vec3d(ray.direction)) * norm)});
     }
-  };
+    return moved;
+  }
 
   MeshView mesh_;
   const KernelApi& kernel_;

@@ -7,6 +7,7 @@
 #include "accel/bvh.h"
 #include "accel/ray_arrays.h"
 #include "castray/render.h"
+#include "kernels/api.h"
 
 namespace castray {
 

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "accel/ray.h"
-#include "kernels/api.h"
+#include "kernels/wide_bvh_view.h"
 
 namespace castray {
 
@@ -30,12 +31,12 @@ class RayArrays {
     return {{n[0][i], n[1][i], n[2][i]}, {n[3][i], n[4][i], n[5][i]}, n[6][i]};
   }
 
-  /// The nearest hits of rays [first, first + count), into `hits` from 0 on.
-  void closest(const KernelApi& kernel, const WideBvhView& bvh, std::size_t first, std::size_t count,
+  /// The nearest hits of rays [first, first + count), as `trace` finds them, into `hits` from 0 on.
+  void closest(const std::function<void(const RayBatch&)>& trace, std::size_t first, std::size_t count,
                Hit<float>* hits) const;
 
   /// Whether they hit anything, 1 or 0.
-  void occluded(const KernelApi& kernel, const WideBvhView& bvh, std::size_t first, std::size_t count,
+  void occluded(const std::function<void(const ShadowBatch&)>& trace, std::size_t first, std::size_t count,
                 std::uint8_t* occluded) const;
 
  private:

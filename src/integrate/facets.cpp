@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "core/error_bounds.h"
+
 namespace castray {
 
 namespace {
@@ -166,7 +168,7 @@ double light_error(const Facet& f) {
     extent = std::max(extent, max_component(magnitude(p - corners[0])));
     for (int c = 0; c < 3; ++c) size[c] = std::max(size[c], std::abs(p[c]));
   }
-  return deviation + dot(magnitude(n), size * (9 * ulp) + Vec3d(extent * (24 * ulp)));
+  return deviation + dot(magnitude(n), size * (9 * ulp) + Vec3d(error_of_test(static_cast<float>(extent))));
 }
 
 FacetList view(const std::vector<Facet>& facets) {

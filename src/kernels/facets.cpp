@@ -25,6 +25,7 @@ void facets_closest(const FacetList& list, float slack, const RayBatch& rays) {
     for (uint32_t l = 0; l < lanes; ++l) {
       rays.t[i + l] = lane(hit.t, (int)l);
       rays.triangle[i + l] = lane(hit.facet, (int)l);
+      rays.b1[i + l] = rays.b2[i + l] = 0;
     }
   });
 }

@@ -5,7 +5,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Finds the nearest facet of every ray, and t; no barycentrics, and t_max is not looked at. The closest hit
+/// Finds the nearest facet of every ray, and t; b1 and b2 are 0, and t_max is not looked at. The closest hit
 /// of the tiles' kernels over lists (list.h) by itself, for tests. `slack` as in api.h.
 void facets_closest(const FacetList& list, float slack, const RayBatch& rays);
 
