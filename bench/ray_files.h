@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "accel/ray_arrays.h"
 #include "castray/error.h"
 #include "core/files.h"
+#include "geometry/ray_arrays.h"
 
 namespace castray {
 

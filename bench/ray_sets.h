@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "accel/ray.h"
-#include "kernels/api.h"
+#include "geometry/ray.h"
+#include "wavefront/kernel_api.h"
 
 namespace castray {
 

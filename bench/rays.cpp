@@ -5,12 +5,12 @@
 
 #include <ostream>
 
-#include "accel/wide_bvh.h"
 #include "core/tool_main.h"
-#include "integrate/wavefront.h"
+#include "geometry/wide_bvh.h"
 #include "ray_bench.h"
 #include "ray_sets.h"
 #include "tracers.h"
+#include "wavefront/wavefront.h"
 
 namespace castray {
 namespace {

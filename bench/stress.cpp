@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include "core/tool_main.h"
-#include "integrate/wavefront.h"
 #include "stress_checks.h"
+#include "wavefront/wavefront.h"
 
 namespace castray {
 namespace {

@@ -2,12 +2,12 @@
 
 #include <optional>
 
-#include "accel/list.h"
-#include "accel/wide_bvh.h"
 #include "castray/error.h"
-#include "integrate/facets.h"
-#include "integrate/wavefront.h"
+#include "geometry/facets.h"
+#include "geometry/list.h"
+#include "geometry/wide_bvh.h"
 #include "scene/scene_builder.h"
+#include "wavefront/wavefront.h"
 
 namespace castray {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "accel/bvh.h"
-#include "accel/ray_arrays.h"
 #include "castray/render.h"
-#include "kernels/api.h"
+#include "geometry/bvh.h"
+#include "geometry/ray_arrays.h"
+#include "wavefront/kernel_api.h"
 
 namespace castray {
 

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "castray/error.h"
-#include "integrate/film_key.h"
+#include "render/film_key.h"
 
 namespace castray::cli {
 

@@ -7,13 +7,13 @@
 #include <set>
 #include <string>
 
-#include "accel/build_quality.h"
 #include "castray/image.h"
 #include "castray/scene.h"
 #include "cli/commands.h"
 #include "cli/image_info.h"
 #include "core/text.h"
-#include "integrate/plan.h"
+#include "geometry/build_quality.h"
+#include "render/plan.h"
 
 namespace castray::cli {
 

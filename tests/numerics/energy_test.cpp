@@ -4,7 +4,7 @@
 
 #include "core/sequences.h"
 #include "integrators.h"
-#include "shading/material_table.h"
+#include "materials/material_table.h"
 #include "statistics.h"
 #include "test_scenes.h"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "integrate/estimator.h"
 #include "integrators.h"
+#include "reference/estimator.h"
 #include "statistics.h"
 #include "test_scenes.h"
 

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "accel/list.h"
 #include "core/error_bounds.h"
 #include "core/sequences.h"
 #include "core/warp.h"
+#include "geometry/list.h"
 
 using namespace castray;
 

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "generate/shapes.h"
-#include "integrate/wavefront.h"
 #include "reference_images.h"
 #include "test_scenes.h"
+#include "wavefront/wavefront.h"
 
 using namespace castray;
 using namespace castray::test;

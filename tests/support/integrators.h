@@ -5,7 +5,7 @@
 
 #include "castray/error.h"
 #include "castray/render.h"
-#include "integrate/wavefront.h"
+#include "wavefront/wavefront.h"
 
 namespace castray::test {
 

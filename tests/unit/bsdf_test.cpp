@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include "core/sequences.h"
-#include "shading/material_table.h"
+#include "materials/material_table.h"
 #include "statistics.h"
 
 using namespace castray;
 using namespace castray::test;
 
-// One harness for every BSDF: whatever keeps the contract of shading/bsdf_sample.h passes.
+// One harness for every BSDF: whatever keeps the contract of materials/bsdf_sample.h passes.
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "accel/build_quality.h"
+#include "geometry/build_quality.h"
 
 #include <catch2/catch.hpp>
 

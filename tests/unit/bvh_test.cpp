@@ -1,11 +1,11 @@
-#include "accel/bvh.h"
+#include "geometry/bvh.h"
 
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <functional>
 
-#include "accel/bvh_build.h"
-#include "accel/list.h"
+#include "geometry/bvh_build.h"
+#include "geometry/list.h"
 #include "stress_checks.h"
 
 using namespace castray;

@@ -1,9 +1,9 @@
-#include "integrate/covered_lights.h"
+#include "lights/covered_lights.h"
 
 #include <catch2/catch.hpp>
 
 #include "generate/shapes.h"
-#include "integrate/facets.h"
+#include "geometry/facets.h"
 #include "test_scenes.h"
 
 using namespace castray;

@@ -1,4 +1,4 @@
-#include "integrate/light_tree.h"
+#include "lights/light_tree.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "castray/error.h"
-#include "integrate/block_noise.h"
+#include "render/block_noise.h"
 #include "test_scenes.h"
 
 using namespace castray;

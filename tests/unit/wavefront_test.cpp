@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "core/sequences.h"
-#include "integrate/wavefront.h"
 #include "test_scenes.h"
+#include "wavefront/wavefront.h"
 
 using namespace castray;
 using namespace castray::test;

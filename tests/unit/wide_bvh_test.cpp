@@ -1,4 +1,4 @@
-#include "accel/wide_bvh.h"
+#include "geometry/wide_bvh.h"
 
 #include <catch2/catch.hpp>
 #include <cstring>

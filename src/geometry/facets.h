@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "castray/scene.h"
+#include "geometry/list.h"
+#include "wavefront/kernel_api.h"
+
+namespace castray {
+
+/// The flat list's facets, with the storage that the kernels' views point into.
+struct Facets {
+  std::vector<Facet> facets;    ///< all of the scene, sorted by axis
+  std::vector<Facet> blockers;  ///< those that can lie between two points of the scene, sorted by axis
+  std::vector<float> blocker_fields;
+
+  FacetList list() const;
+  FacetList blocker_list() const;
+  BlockerList blocker_field_list() const;
+};
+
+/// Merges pairs of triangles that form a convex coplanar quad of one material, and drops from the blockers
+/// every facet that has the whole scene on one side of its plane: nothing can be behind it.
+Facets make_facets(const Scene& scene);
+
+/// Closest hits on facets by the reference's test of their triangles, in double: watertight, and right about
+/// which of two facets that share an edge is in front. The scene must outlive it.
+class FacetsInDouble {
+ public:
+  FacetsInDouble(const Scene& scene, const std::vector<Facet>& facets);
+  ExactFacets view() const { return {this, closest}; }
+
+ private:
+  static void closest(const void* self, const float origin[3], const float direction[3], float& t,
+                      std::uint32_t& facet);
+
+  TriangleList triangles_;
+  std::vector<std::uint32_t> facet_of_;  ///< by triangle
+};
+
+/// The facets of the emitting triangles alone.
+std::vector<Facet> emitting_facets(const Scene& scene);
+
+}  // namespace castray

@@ -1,0 +1,64 @@
+#include "geometry/wide_bvh_lanes.h"
+
+#include "geometry/bvh_traverse_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+namespace {
+
+/// Where the hits of a group's rays go.
+struct Hits {
+  float* t;
+  uint32_t* triangle;
+  float *b1, *b2;
+};
+
+template <bool any, class Batch>
+CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t first, uint32_t count,
+                          RayGroup& group, float* stack_t, uint32_t* stack_child, const Hits& hits) {
+  const uint32_t last = first + count;
+  for (uint32_t i = first; i < last; i += width) {
+    const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last),
+                        load_padded(rays.oz, i, last)};
+    const Float d[3] = {load_padded(rays.dx, i, last), load_padded(rays.dy, i, last),
+                        load_padded(rays.dz, i, last)};
+    prepare(group, i - first, bvh, o, d, load_padded(rays.t_max, i, last));
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    hits.t[i] = __builtin_inff();
+    hits.triangle[i] = no_triangle;
+    hits.b1[i] = hits.b2[i] = 0;
+  }
+  if (bvh.triangles > 0) trace_group<any>(bvh, group, count, stack_t, stack_child, hits);
+}
+
+constexpr uint32_t slots = 32;
+
+}  // namespace
+
+void bvh_closest(const WideBvhView& bvh, const RayBatch& rays) {
+  const uint32_t room = slots * (7u * (uint32_t)bvh.depth + 9);
+  float* const stack_t = (float*)__builtin_alloca(room * sizeof(float));
+  uint32_t* const stack_child = (uint32_t*)__builtin_alloca(room * sizeof(uint32_t));
+  RayGroup group;
+  for (uint32_t first = 0; first < rays.count; first += group_size) {
+    const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
+    trace<false>(bvh, rays, first, count, group, stack_t, stack_child,
+                 {rays.t + first, rays.triangle + first, rays.b1 + first, rays.b2 + first});
+  }
+}
+
+void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) {
+  const uint32_t room = slots * (7u * (uint32_t)bvh.depth + 9);
+  float* const stack_t = (float*)__builtin_alloca(room * sizeof(float));
+  uint32_t* const stack_child = (uint32_t*)__builtin_alloca(room * sizeof(uint32_t));
+  RayGroup group;
+  float t[group_size], b1[group_size], b2[group_size];
+  uint32_t triangle[group_size];
+  for (uint32_t first = 0; first < rays.count; first += group_size) {
+    const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
+    trace<true>(bvh, rays, first, count, group, stack_t, stack_child, {t, triangle, b1, b2});
+    for (uint32_t i = 0; i < count; ++i) rays.occluded[first + i] = triangle[i] != no_triangle;
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,63 @@
+#include "lights/area_lights.h"
+
+#include <algorithm>
+
+#include "core/error_bounds.h"
+
+namespace castray {
+
+namespace {
+
+struct Corners {
+  Vec3d v0, v1, v2;
+  Vec3d twice_area() const { return cross(v1 - v0, v2 - v0); }
+};
+
+Corners corners(const Scene& scene, std::uint32_t triangle) {
+  const Index3& t = scene.triangles[triangle];
+  return {Vec3d(scene.positions[t[0]]), Vec3d(scene.positions[t[1]]), Vec3d(scene.positions[t[2]])};
+}
+
+}  // namespace
+
+template <class T>
+AreaLights<T>::AreaLights(const Scene& scene) : material_density_(scene.materials.size()) {
+  double total_area = 0, light_area = 0, power = 0;
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i)
+    total_area += length(corners(scene, i).twice_area()) / 2;
+  std::vector<double> powers;
+  for (const std::uint32_t i : scene.lights) {
+    const Corners c = corners(scene, i);
+    const Material& material = scene.material_of(i);
+    const Vec3d normal = c.twice_area();
+    const double area = length(normal) / 2;
+    light_area += area;
+    powers.push_back(area * luminance(material.ke));
+    power += powers.back();
+    cumulative_.push_back(power);
+    triangles_.push_back({Vec3<T>(c.v0), Vec3<T>(c.v1), Vec3<T>(c.v2), Vec3<T>(normalize(normal)),
+                          Vec3<T>(material.ke), T(0), T(0), i, material.two_sided_emission});
+  }
+  for (double& c : cumulative_) c /= power;
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+    material_density_[m] = power > 0 ? static_cast<T>(luminance(scene.materials[m].ke) / power) : T(0);
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    triangles_[i].choice = static_cast<T>(powers[i] / power);
+    triangles_[i].pdf_area = material_density_[scene.triangle_material[triangles_[i].index]];
+  }
+  share_of_surface_ = total_area > 0 ? light_area / total_area : 0;
+}
+
+template <class T>
+LightPoint<T> AreaLights<T>::sample(double u_choice, Point2<T> u) const {
+  const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u_choice);
+  const Triangle& t = triangles_[static_cast<std::size_t>(found - cumulative_.begin())];
+  const auto [b1, b2] = uniform_triangle(u);
+  const TrianglePoint<T> point = point_on_triangle(t.v0, t.v1, t.v2, b1, b2);
+  return {point.p, point.error, t.normal, t.radiance, t.pdf_area, t.choice, t.index, t.two_sided};
+}
+
+template class AreaLights<float>;
+template class AreaLights<double>;
+
+}  // namespace castray

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <variant>
+
+#include "materials/conductor.h"
+#include "materials/dielectric.h"
+#include "materials/diffuse.h"
+#include "materials/microfacet.h"
+
+namespace castray {
+
+/// How a material reflects, at a point; see bsdf_sample.h for the contract.
+template <class T>
+class Bsdf {
+ public:
+  template <class Model>
+  Bsdf(const Model& model) : model_(model) {}
+
+  Vec3<T> evaluate(const Vec3<T>& wo, const Vec3<T>& wi) const {
+    return std::visit([&](const auto& m) { return m.evaluate(wo, wi); }, model_);
+  }
+  T pdf(const Vec3<T>& wo, const Vec3<T>& wi) const {
+    return std::visit([&](const auto& m) { return m.pdf(wo, wi); }, model_);
+  }
+  BsdfSample<T> sample(const Vec3<T>& wo, T u_lobe, Point2<T> u) const {
+    return std::visit([&](const auto& m) { return m.sample(wo, u_lobe, u); }, model_);
+  }
+
+  /// Multiplies the diffuse reflectance, for a texture.
+  void tint(const Vec3<T>& factor) {
+    if (auto* diffuse = std::get_if<Diffuse<T>>(&model_)) diffuse->kd *= factor;
+    if (auto* microfacet = std::get_if<Microfacet<T>>(&model_)) microfacet->base *= factor;
+  }
+
+ private:
+  std::variant<Diffuse<T>, Conductor<T>, Microfacet<T>, Dielectric<T>> model_;
+};
+
+}  // namespace castray

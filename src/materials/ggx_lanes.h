@@ -1,0 +1,62 @@
+#pragma once
+
+#include "simd/vec_lanes.h"
+
+// materials/ggx.h in lanes. Directions are in a frame whose +z is the normal, on the viewer's side.
+
+namespace castray::CASTRAY_ISA {
+
+inline constexpr float pi = 3.14159265358979f;
+
+CASTRAY_INLINE Float square(Float x) { return x * x; }
+CASTRAY_INLINE Vec normalize(Vec a) { return a * (Float(1.f) / sqrt(length_squared(a))); }
+CASTRAY_INLINE Vec reflect(Vec w, Vec h) { return fma(h, Float(2.f) * dot(w, h), -w); }
+
+CASTRAY_INLINE Float ggx_stretched_length(Float alpha, Vec w) {
+  return sqrt(fma(alpha * alpha, fma(w.x, w.x, w.y * w.y), w.z * w.z));
+}
+CASTRAY_INLINE Float ggx_distribution(Float alpha, Vec h) {
+  const Float a2 = alpha * alpha;
+  const Float s = fma(h.x, h.x, h.y * h.y) / a2 + h.z * h.z;
+  return Float(1.f / pi) / (a2 * s * s);
+}
+/// G2 / (4 wo.z wi.z)
+CASTRAY_INLINE Float ggx_shadowing_over_cos(Float alpha, Vec wo, Vec wi) {
+  return Float(0.5f) / fma(wi.z, ggx_stretched_length(alpha, wo), wo.z * ggx_stretched_length(alpha, wi));
+}
+/// Part of the spherical cap that reflection above the horizon can need (Eto and Tokuyoshi 2023).
+CASTRAY_INLINE Float ggx_cap_scale(Float alpha, Vec wo) {
+  const Float a2 = min(alpha * alpha, Float(1.f));
+  const Float s2 = square(Float(1.f) + sqrt(fma(wo.x, wo.x, wo.y * wo.y)));
+  return (Float(1.f) - a2) * s2 / fma(a2, wo.z * wo.z, s2);
+}
+/// A normal visible from wo (Dupuy and Benyoub 2023).
+CASTRAY_INLINE Vec ggx_sample_normal(Float alpha, Vec wo, Float u, Float v, Float cap) {
+  const Vec w = Vec{alpha * wo.x, alpha * wo.y, wo.z} * (Float(1.f) / ggx_stretched_length(alpha, wo));
+  const Float z = Float(1.f) - u * fma(cap, w.z, Float(1.f));
+  const Float r = sqrt(max((Float(1.f) - z) * (Float(1.f) + z), Float(0.f)));
+  const SinCos turn = sincos_turn(v);
+  const Vec h{fma(r, turn.cos, w.x), fma(r, turn.sin, w.y), z + w.z};
+  return normalize(Vec{alpha * h.x, alpha * h.y, max(h.z, Float(0.f))});
+}
+CASTRAY_INLINE Float ggx_reflection_pdf(Float alpha, Vec wo, Vec h, Float cap) {
+  return ggx_distribution(alpha, h) / (Float(2.f) * fma(cap, wo.z, ggx_stretched_length(alpha, wo)));
+}
+
+/// Unpolarised Fresnel reflectance at cos_i >= 0, eta = n_t / n_i; 1 at total reflection.
+CASTRAY_INLINE Float fresnel_dielectric(Float cos_i, Float eta) {
+  const Float sin2_t = (Float(1.f) - cos_i * cos_i) / (eta * eta);
+  const Float cos_t = sqrt(max(Float(1.f) - sin2_t, Float(0.f)));
+  const Float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
+  const Float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
+  return select(sin2_t >= Float(1.f), Float(1.f),
+                Float(0.5f) * fma(parallel, parallel, perpendicular * perpendicular));
+}
+/// w refracted at the normal h, dot(w,h) > 0, eta = n_t / n_i.
+CASTRAY_INLINE Vec refract(Vec w, Vec h, Float eta) {
+  const Float cos_i = dot(w, h);
+  const Float cos_t = sqrt(max(Float(1.f) - (Float(1.f) - cos_i * cos_i) / (eta * eta), Float(0.f)));
+  return h * (cos_i / eta - cos_t) - w * (Float(1.f) / eta);
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,166 @@
+#pragma once
+
+#include <cstdint>
+
+#include "castray/render.h"
+#include "core/sequences.h"
+#include "lights/area_lights.h"
+#include "reference/estimator.h"
+#include "reference/faults.h"
+#include "reference/segments.h"
+#include "reference/surface.h"
+
+namespace castray {
+
+/// The recursive path tracer, to be held against the rendering equation (Kajiya 1986)
+///
+///     L(x, wo) = Le(x, wo) + integral f(x, wo, wi) L(x', -wi) |cos wi| d wi
+///
+/// whose integral is split in two: light that comes straight from an emitter, sampled over the emitters'
+/// areas with d wi = dA cos' / |x' - x|^2, and light reflected at x', sampled by the BSDF. One sample of each
+/// per vertex. T is float or double; Accel has `Hit<T> closest(Ray<T>)` and `bool occluded(Ray<T>)`.
+template <class T, class Accel>
+class CastRay {
+ public:
+  /// All references must outlive this object. Const and shared by threads.
+  CastRay(const Scene& scene, const Accel& accel, const RenderOptions& options)
+      : scene_(scene),
+        options_(options),
+        accel_(accel),
+        surfaces_(scene),
+        lights_(scene),
+        segments_{options.epsilon},
+        environment_(scene.environment),
+        mis_(uses_mis(options.mis, lights_.share_of_surface())) {}
+
+  /// Radiance of one camera sample of pixel (x,y) of a width x height image; adds the rays traced to `rays`.
+  Vec3<T> sample_pixel(int x, int y, int width, int height, std::uint64_t sample, std::uint64_t& rays) const {
+    Path path{.key = pixel_key(x, y, options_.seed), .sample = sample};
+    const std::array<float, 4> u = draw(path, PathBlocks::camera);
+    const double jitter_x = options_.jitter ? u[0] : 0.5, jitter_y = options_.jitter ? u[1] : 0.5;
+    path.light_u = {T(u[2]), T(u[3])};
+    const Vec3d direction = scene_.camera.direction(x + jitter_x, y + jitter_y, width, height);
+    const bool sees_light = options_.fault != Fault::black_light;
+    const Vec3<T> radiance = cast_ray({Vec3<T>(scene_.camera.position), Vec3<T>(normalize(direction))}, path,
+                                      sees_light ? Arrival::whole() : Arrival::none());
+    rays += path.rays;
+    return radiance;
+  }
+
+ private:
+  /// What the recursion carries along.
+  struct Path {
+    std::uint32_t key;
+    std::uint64_t sample;
+    std::uint32_t vertex = 0;
+    Vec3<T> throughput{1};  ///< of radiance without the scale of refractions: for roulette only
+    Point2<T> light_u{};    ///< for the light point of this vertex
+    std::uint64_t rays = 0;
+  };
+
+  /// How a ray was chosen, which decides what emission it may count.
+  struct Arrival {
+    bool counts = false, shared = false;
+    T pdf = 0;  ///< where shared: density per steradian of the ray's direction
+    static Arrival whole() { return {.counts = true}; }
+    static Arrival none() { return {}; }
+    static Arrival shared_with_lights(T pdf) { return {.counts = true, .shared = true, .pdf = pdf}; }
+  };
+
+  std::array<float, 4> draw(const Path& path, std::uint32_t block) const {
+    if (options_.fault == Fault::slow_random) return draw_from_new_engines();
+    return sample_block(options_.sampler, path.key, path.sample, block);
+  }
+
+  /// L: radiance that arrives at the ray's origin against its direction (of unit length).
+  Vec3<T> cast_ray(const Ray<T>& ray, Path& path, const Arrival& arrival) const {
+    ++path.rays;
+    const Hit<T> hit = accel_.closest(ray);
+    if (!hit.found()) return environment_;
+    Surface<T> x = surfaces_.at(hit, ray);
+    segments_.place(x, hit, ray);
+
+    Vec3<T> radiance = emission(x, hit.t, arrival);
+    const auto edges_of_next = static_cast<int>(path.vertex) + 2;
+    if (options_.max_depth > 0 && edges_of_next > options_.max_depth) return radiance;
+    // roulette, lobe, light
+    const std::array<float, 4> choice = draw(path, PathBlocks::choice(path.vertex));
+    radiance += direct_light(x, path, static_cast<double>(choice[2]) + choice[3] * 0x1p-24);
+    const bool clamps = options_.clamp_indirect && path.vertex == 0;
+    const Vec3<T> indirect = indirect_light(x, path, T(choice[0]), T(choice[1]));
+    return radiance + (clamps ? clamped(indirect, T(*options_.clamp_indirect)) : indirect);
+  }
+
+  /// Le, or the part of it that this way of finding it has to count.
+  Vec3<T> emission(const Surface<T>& x, T distance, const Arrival& arrival) const {
+    const Material& material = scene_.materials[x.material];
+    const T cosine = dot(x.normal, x.to_viewer);
+    if (!arrival.counts || !material.emits() || !(cosine > 0 || material.two_sided_emission)) return {};
+    const Vec3<T> le(material.ke);
+    if (!arrival.shared) return le;
+    const T light_pdf = lights_.pdf_area(x.material) * distance * distance / std::abs(cosine);
+    return le * balance(arrival.pdf, light_pdf);
+  }
+
+  /// Integral over the emitters: f Le cos cos' / |x' - x|^2 V / density, at one point x'.
+  Vec3<T> direct_light(const Surface<T>& x, Path& path, double u_choice) const {
+    if (lights_.empty()) return {};
+    if (options_.fault == Fault::skewed_light) u_choice = std::sqrt(u_choice);
+    const LightPoint<T> y = lights_.sample(u_choice, path.light_u);
+    const T pdf_area = options_.fault == Fault::no_light_choice ? y.pdf_area / y.choice : y.pdf_area;
+
+    const Vec3<T> segment = y.p - x.p;
+    const T distance2 = dot(segment, segment);
+    const Vec3<T> wi = segment / std::sqrt(distance2);
+    const Vec3<T> local = x.frame.to_local(wi);
+    const T facing = -dot(y.normal, wi), cos_light = y.two_sided ? std::abs(facing) : facing;
+    if (!(cos_light > 0) || !x.consistent(wi, local) || in_one_plane(x, y, segment)) return {};
+
+    Vec3<T> radiance =
+        x.bsdf.evaluate(x.wo, local) * y.radiance * (std::abs(local.z) * cos_light / (distance2 * pdf_area));
+    if (!(max_component(radiance) > 0)) return {};
+    if (mis_) radiance *= balance(pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
+    ++path.rays;
+    return segments_.visible(accel_, x, y) ? radiance : Vec3<T>();
+  }
+
+  /// Integral over the hemisphere of what is not direct light: f cos / pdf L, in one direction.
+  Vec3<T> indirect_light(const Surface<T>& x, Path& path, T u_roulette, T u_lobe) const {
+    const std::array<float, 4> u = draw(path, PathBlocks::direction(path.vertex));
+    const Point2<T> u_direction{T(u[0]), T(u[1])};
+    const BsdfSample<T> sample = options_.fault == Fault::white_specks
+                                     ? sample_uniformly(x.bsdf, x.wo, u_direction)
+                                     : x.bsdf.sample(x.wo, u_lobe, u_direction);
+    if (!sample.valid()) return sample.weight;
+    const Vec3<T> wi = x.frame.to_world(sample.wi);
+    if (!x.consistent(wi, sample.wi)) return {};
+
+    path.throughput *= sample.weight * sample.eta2;
+    const T survival = survival_probability(options_.rr, path.vertex, max_component(path.throughput));
+    if (!(u_roulette < survival)) return {};
+    path.throughput = path.throughput / survival;
+    path.light_u = {T(u[2]), T(u[3])};
+    ++path.vertex;
+
+    const Arrival arrival = sample.specular ? Arrival::whole()
+                            : mis_          ? Arrival::shared_with_lights(sample.pdf)
+                                            : Arrival::none();
+    return cast_ray({segments_.origin(x, wi), wi}, path, arrival) * (sample.weight / survival);
+  }
+
+  static Vec3<T> clamped(const Vec3<T>& radiance, T most) {
+    const T brightest = max_component(radiance);
+    return brightest > most ? radiance * (most / brightest) : radiance;
+  }
+
+  const Scene& scene_;
+  const RenderOptions& options_;
+  const Accel& accel_;
+  Surfaces<T> surfaces_;
+  AreaLights<T> lights_;
+  Segments<T> segments_;
+  Vec3<T> environment_;
+  bool mis_;
+};
+
+}  // namespace castray

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+
+#include "geometry/ray.h"
+#include "lights/area_lights.h"
+#include "reference/surface.h"
+
+namespace castray {
+
+/// The error bound of a surface point as the far end of `segment`: its triangle is tested from the other end.
+template <class T>
+Vec3<T> far_error(const Surface<T>& x, const Vec3<T>& segment) {
+  return x.error + error_of_test(max_component(magnitude(segment)));
+}
+
+/// Where rays start and which segments are free: by the hits' own error bounds, or, for comparison, by the
+/// classic absolute epsilon (then the scene is to be in the file's own coordinates).
+template <class T>
+struct Segments {
+  std::optional<double> epsilon;
+
+  /// The classic way takes the point from the ray instead of the triangle, and knows no error bound.
+  void place(Surface<T>& x, const Hit<T>& hit, const Ray<T>& ray) const {
+    if (!epsilon) return;
+    x.p = ray.origin + ray.direction * hit.t;
+    x.error = {};
+  }
+
+  Vec3<T> origin(const Surface<T>& x, const Vec3<T>& direction) const {
+    if (!epsilon) return offset_origin(x.p, x.error, x.normal, direction);
+    const T side = dot(direction, x.normal) < 0 ? T(-1) : T(1);
+    return x.p + x.normal * (side * static_cast<T>(*epsilon));
+  }
+
+  /// Whether nothing lies between x and y: the segment between both offset points is free, t < 1 on the
+  /// unnormalised vector. It is traced from the light: an origin is known to its own error, a far end to one
+  /// that grows with the distance, and what is so near to x that it might be missed would have kept the path
+  /// from x. Classic: the first thing hit from x towards y is within epsilon of y.
+  template <class Accel>
+  bool visible(const Accel& accel, const Surface<T>& x, const LightPoint<T>& y) const {
+    const Vec3<T> towards = y.p - x.p;
+    if (epsilon) {
+      const Vec3<T> from = origin(x, towards);
+      const Ray<T> ray{from, normalize(y.p - from)};
+      const Hit<T> hit = accel.closest(ray);
+      return hit.found() && length(y.p - (from + ray.direction * hit.t)) < static_cast<T>(*epsilon);
+    }
+    const Vec3<T> from = offset_origin(y.p, y.error, y.normal, -towards);
+    const Vec3<T> to = offset_origin(x.p, far_error(x, towards), x.normal, towards);
+    return !accel.occluded(Ray<T>{from, to - from, T(1)});
+  }
+};
+
+/// Whether, as far as rounding lets us know, x lies in y's plane or y in x's: then neither lights the other,
+/// and cos cos' / |x' - x|^2 would be the quotient of two rounding errors.
+template <class T>
+bool in_one_plane(const Surface<T>& x, const LightPoint<T>& y, const Vec3<T>& segment) {
+  const Vec3<T> error = far_error(x, segment) + y.error;
+  const auto within_error = [&](const Vec3<T>& n) {
+    return std::abs(dot(n, segment)) <= dot(magnitude(n), error);
+  };
+  return within_error(x.normal) || within_error(y.normal);
+}
+
+}  // namespace castray

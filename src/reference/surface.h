@@ -1,0 +1,97 @@
+#pragma once
+
+#include <vector>
+
+#include "core/error_bounds.h"
+#include "core/frame.h"
+#include "geometry/ray.h"
+#include "materials/material_table.h"
+#include "materials/texture.h"
+
+namespace castray {
+
+/// A point of the scene as a ray meets it.
+template <class T>
+struct Surface {
+  Vec3<T> p, error;   ///< the point and a bound of its rounding error per coordinate
+  Vec3<T> normal;     ///< geometric, unit, as the triangle's winding has it
+  Vec3<T> to_viewer;  ///< unit, against the ray
+  Frame<T> frame;     ///< of the shading normal
+  Vec3<T> wo;         ///< to_viewer in the shading frame
+  Bsdf<T> bsdf;
+  std::uint32_t triangle = Scene::no_index;
+  std::uint16_t material = 0;
+
+  /// Whether wi, sampled or evaluated in the shading frame as `local`, is on the same side of the real
+  /// surface: shading normals must not let light through an opaque one.
+  bool consistent(const Vec3<T>& wi, const Vec3<T>& local) const {
+    const bool same_side = (dot(wi, normal) > 0) == (dot(to_viewer, normal) > 0);
+    return same_side == ((local.z > 0) == (wo.z > 0));
+  }
+};
+
+/// What of a scene is needed to turn hits into surfaces; the scene must outlive it.
+template <class T>
+class Surfaces {
+ public:
+  explicit Surfaces(const Scene& scene) : scene_(scene), materials_(scene.materials) {
+    normals_.reserve(scene.triangles.size());
+    for (const Index3& t : scene.triangles) {
+      const Vec3d v0(scene.positions[t[0]]), v1(scene.positions[t[1]]), v2(scene.positions[t[2]]);
+      normals_.emplace_back(normalize(cross(v1 - v0, v2 - v0)));
+    }
+  }
+
+  /// The surface that `ray`, of unit direction, meets at `hit`.
+  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray) const {
+    const Index3& t = scene_.triangles[hit.triangle];
+    const TrianglePoint<T> point =
+        point_on_triangle(Vec3<T>(scene_.positions[t[0]]), Vec3<T>(scene_.positions[t[1]]),
+                          Vec3<T>(scene_.positions[t[2]]), hit.b1, hit.b2);
+    const std::uint16_t material = scene_.triangle_material[hit.triangle];
+    const Vec3<T>& normal = normals_[hit.triangle];
+    const Vec3<T> to_viewer = -ray.direction;
+    const Frame<T> frame = make_frame(shading_normal(hit, normal, to_viewer));
+    Surface<T> surface{
+        point.p,      point.error, normal, to_viewer, frame, frame.to_local(to_viewer), materials_[material],
+        hit.triangle, material};
+    if (scene_.materials[material].kd_texture >= 0) tint(surface, hit);
+    return surface;
+  }
+
+ private:
+  /// The interpolated vertex normal, on the geometric normal's side; the geometric one where there is none or
+  /// where the viewer would be behind it.
+  Vec3<T> shading_normal(const Hit<T>& hit, const Vec3<T>& normal, const Vec3<T>& to_viewer) const {
+    if (scene_.triangle_normals.empty()) return normal;
+    const Index3& n = scene_.triangle_normals[hit.triangle];
+    if (n[0] == Scene::no_index) return normal;
+    Vec3<T> smooth = Vec3<T>(scene_.normals[n[0]]) * (T(1) - hit.b1 - hit.b2) +
+                     Vec3<T>(scene_.normals[n[1]]) * hit.b1 + Vec3<T>(scene_.normals[n[2]]) * hit.b2;
+    smooth = normalize(smooth);
+    if (!is_finite(smooth)) return normal;
+    if (dot(smooth, normal) < 0) smooth = -smooth;
+    return dot(smooth, to_viewer) * dot(normal, to_viewer) > 0 ? smooth : normal;
+  }
+
+  void tint(Surface<T>& surface, const Hit<T>& hit) const {
+    if (scene_.triangle_uvs.empty()) return;
+    const Index3& index = scene_.triangle_uvs[hit.triangle];
+    if (index[0] == Scene::no_index) return;
+    const auto uv = [&](std::size_t corner, std::size_t axis) {
+      return static_cast<T>(scene_.uvs[index[corner]][axis]);
+    };
+    const auto interpolate = [&](std::size_t axis) {
+      return uv(0, axis) * (T(1) - hit.b1 - hit.b2) + uv(1, axis) * hit.b1 + uv(2, axis) * hit.b2;
+    };
+    const int texture = scene_.materials[surface.material].kd_texture;
+    surface.bsdf.tint(
+        lookup(scene_.textures[static_cast<std::size_t>(texture)], interpolate(0), interpolate(1)));
+  }
+
+  const Scene& scene_;
+  MaterialTable<T> materials_;
+  std::vector<Vec3<T>> normals_;
+};
+
+}  // namespace castray

@@ -1,0 +1,109 @@
+#include "render/film_key.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "render/row_loop.h"
+
+namespace castray {
+
+namespace {
+
+/// A 64-bit hash of all bytes given, in order (the mixing step of splitmix64 on each word).
+class Hash {
+ public:
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::has_unique_object_representations_v<T> || std::is_floating_point_v<T>);
+    add_bytes(&value, sizeof value);
+  }
+  void add(const Vec3d& v) { add(v.x), add(v.y), add(v.z); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(values.size());
+    add_bytes(values.data(), values.size() * sizeof(T));
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  void add_bytes(const void* data, std::size_t size) {
+    const auto* bytes = static_cast<const unsigned char*>(data);
+    for (; size > 0; bytes += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      const std::size_t n = size < sizeof word ? size : sizeof word;
+      std::memcpy(&word, bytes, n);
+      state_ = mix(state_ ^ word) + 0x9e3779b97f4a7c15u;
+      size -= n;
+    }
+  }
+
+  static constexpr std::uint64_t mix(std::uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+
+  std::uint64_t state_ = 0;
+};
+
+std::uint64_t scene_hash(const Scene& scene) {
+  Hash hash;
+  const Camera& camera = scene.camera;
+  for (const Vec3d& v :
+       {camera.position, camera.forward, camera.right, camera.up, scene.center, scene.environment})
+    hash.add(v);
+  hash.add(camera.tan_half_fov);
+  hash.add(scene.unit);
+  hash.add(scene.positions);
+  hash.add(scene.triangles);
+  hash.add(scene.triangle_material);
+  hash.add(scene.normals);
+  hash.add(scene.triangle_normals);
+  hash.add(scene.uvs);
+  hash.add(scene.triangle_uvs);
+  for (const Material& m : scene.materials) {
+    hash.add(m.type);
+    for (const Vec3d& v : {m.kd, m.ks, m.reflectance, m.ke}) hash.add(v);
+    hash.add(m.alpha);
+    hash.add(m.ior);
+    hash.add(m.two_sided_emission);
+    hash.add(m.kd_texture);
+  }
+  for (const Texture& texture : scene.textures) hash.add(texture.width), hash.add(texture.texels);
+  return hash.value();
+}
+
+}  // namespace
+
+std::string film_key(const Scene& scene, const RenderOptions& o) {
+  std::string key;
+  const auto add = [&key](const char* name, const auto& value) {
+    key += fmt::format("{}{}={}", key.empty() ? "" : "; ", name, value);
+  };
+  const auto number_or_auto = [](const std::optional<double>& number) {
+    return number ? fmt::format("{}", *number) : std::string("auto");
+  };
+  const Window w = window_of(scene, o);
+  add("scene", scene.name);
+  add("hash", fmt::format("{:016x}", scene_hash(scene)));
+  add("size", fmt::format("{}x{}", w.full_width, w.full_height));
+  add("seed", o.seed);
+  add("integrator", o.integrator == Integrator::reference ? "reference" : "wavefront");
+  add("precision", o.precision == Precision::float64 ? "double" : "float");
+  add("sampler", o.sampler == SamplerKind::sobol ? "sobol" : "independent");
+  add("rr", number_or_auto(o.rr));
+  add("max-depth", o.max_depth);
+  add("epsilon", number_or_auto(o.epsilon));
+  add("lights", static_cast<int>(o.lights));
+  add("mis", static_cast<int>(o.mis));
+  add("jitter", o.jitter ? "on" : "off");
+  add("reuse",
+      o.reuse.automatic ? "auto" : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
+  if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
+  if (o.target_error) add("target-error", *o.target_error);
+  if (o.fault != Fault::none) add("fault", static_cast<int>(o.fault));
+  return key;
+}
+
+}  // namespace castray

@@ -1,0 +1,79 @@
+#include "render/plan.h"
+
+#include "geometry/build_quality.h"
+#include "reference/estimator.h"
+#include "render/row_loop.h"
+#include "scene/needs.h"
+#include "wavefront/kernel_api.h"
+
+namespace castray {
+
+namespace {
+
+/// Up to so many triangles a flat list is faster than a tree.
+constexpr std::size_t longest_list = 64;
+
+/// With more, light points are what a tile's error comes from.
+constexpr std::size_t few_light_triangles = 8;
+
+bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
+  if (needs.textures || needs.smooth_normals) return false;  // facets have no barycentrics
+  return options.accel == AccelKind::list ||
+         (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
+}
+
+/// The samples per pixel asked for do not count: with shared paths the last digits tell trees apart, and a
+/// film continued or merged is to be made with one tree.
+BuildQuality build_quality(const Scene& scene, const RenderOptions& options) {
+  constexpr double usual_rays_of_a_pixel = 16 * 4;
+  if (options.build == BuildQuality::fast) return BuildQuality::fast;
+  const Window window = window_of(scene, options);
+  const double pixels = static_cast<double>(window.full_width) * window.full_height;
+  const MeshView mesh = mesh_of(scene);
+  return choose_build(options.build, wasted_boxes(mesh), mesh.count, usual_rays_of_a_pixel * pixels);
+}
+
+std::string kernel_name(const Plan& plan) {
+  std::string name = plan.list ? "list" : "BVH";
+  name += plan.features & feature_detail      ? ", all materials, textures, smooth normals"
+          : plan.features & feature_materials ? ", all materials"
+                                              : ", diffuse";
+  name += plan.suffixes > 0 ? ", " + std::to_string(plan.suffixes) + " paths shared by 8x8 pixels"
+                            : ", plain paths";
+  return name + (plan.mis ? ", MIS" : "");
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const RenderOptions& options) {
+  const SceneNeeds needs = needs_of(scene);
+  Plan plan;
+  plan.list = use_list(needs, options);
+  const bool detail = needs.textures || needs.smooth_normals || (options.generic && !plan.list);
+  const bool materials = detail || needs.conductor || needs.microfacet || needs.dielectric || options.generic;
+  plan.features =
+      (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
+  plan.mis = uses_mis(options.mis, needs.emitting_share);
+  plan.choose_lights_by_importance = options.lights != LightSampling::area;
+  plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
+  plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
+  plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
+  plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options);
+  plan.kernel = kernel_name(plan);
+  const auto skip = [&plan](bool needed, const char* what) {
+    if (!needed) plan.skipped.emplace_back(what);
+  };
+  skip(!plan.list, "tree");
+  skip(plan.list || plan.build == BuildQuality::best, "cut boxes");
+  skip(detail || needs.textures, "textures");
+  skip(detail || needs.smooth_normals, "smooth normals");
+  skip(materials || needs.microfacet, "microfacet");
+  skip(materials || needs.conductor, "conductor");
+  skip(materials || needs.dielectric, "dielectric");
+  skip(needs.environment, "environment");
+  skip(needs.lights > 1, "choice among lights");
+  skip(plan.mis, "multiple importance sampling");
+  return plan;
+}
+
+}  // namespace castray

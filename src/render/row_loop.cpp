@@ -1,0 +1,236 @@
+#include "render/row_loop.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <mutex>
+#include <tuple>
+
+#include "castray/error.h"
+#include "core/threads.h"
+#include "render/film_key.h"
+
+namespace castray {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t samples_of_a_pass = 1u << 24;  ///< of the whole window: some seconds of work
+constexpr std::uint64_t longest_pass = 64;             ///< samples per pixel
+constexpr std::size_t reported_nonfinite = 8;
+constexpr double seconds_between_reports = 0.1;
+
+/// Passes end, counted from the first sample, at 1, 2, 4, ..., from the longest pass on at its multiples, and
+/// at the last sample.
+class Passes {
+ public:
+  Passes(std::uint64_t samples, std::uint64_t pixels) : samples_(samples) {
+    while (longest_ > 1 && longest_ * pixels > samples_of_a_pass) longest_ /= 2;
+  }
+
+  /// The first end that is at least n, 1 <= n <= all samples.
+  std::uint64_t end_from(std::uint64_t n) const {
+    return std::min(samples_, n <= longest_ ? std::bit_ceil(n) : (n + longest_ - 1) / longest_ * longest_);
+  }
+
+ private:
+  std::uint64_t samples_, longest_ = longest_pass;
+};
+
+/// How many samples each row of an earlier run has. Its rows were left at the end of a pass, or of the whole
+/// run; pixels count less where samples were dropped.
+std::vector<std::uint64_t> finished_samples(const Film& film, const Passes& passes) {
+  std::vector<std::uint64_t> finished;
+  const Window& w = film.window();
+  for (int y = w.y0; y < w.y1; ++y) {
+    std::uint64_t most = 0;
+    for (int x = w.x0; x < w.x1; ++x) most = std::max<std::uint64_t>(most, film.count(x, y));
+    finished.push_back(most == 0 ? 0 : passes.end_from(most));
+    if (!film.samples.empty() && most <= film.samples[0].count)
+      finished.back() = std::min(finished.back(), film.samples[0].count);
+  }
+  return finished;
+}
+
+double brightest_emission(const Scene& scene) {
+  double brightest = max_component(scene.environment);
+  for (const Material& material : scene.materials)
+    brightest = std::max(brightest, max_component(material.ke));
+  return brightest;
+}
+
+/// The state of one run, shared by its threads.
+class RowLoop {
+ public:
+  RowLoop(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
+          const Film* start, const SampleMap& map)
+      : options_(options),
+        progress_(progress),
+        map_(map),
+        window_(window_of(scene, options)),
+        samples_(map.range()),
+        passes_(samples_.count,
+                static_cast<std::uint64_t>(window_.width()) * static_cast<std::uint64_t>(window_.height())) {
+    result_.film = Film(window_, brightest_emission(scene));
+    result_.film.key = film_key(scene, options);
+    finished_.resize(static_cast<std::size_t>(window_.height()));
+    if (start) resume(*start);
+    result_.stats.threads = thread_count(options);
+    for (int y = window_.y0; y < window_.y1; ++y)
+      paths_ += map_.total(y, y + 1, {samples_.first, *row_of(y)});
+    paths_before_ = paths_;
+  }
+
+  RenderResult run(const BandWork& work) {
+    begin_ = Clock::now();
+    for (std::uint64_t end = 0; end < samples_.count;) {
+      end = passes_.end_from(end + 1);
+      run_pass(end, work);
+      note_samples();
+      if (!stopped_) report(&result_.film);
+      if (stopped_) break;
+    }
+    RenderStats& stats = result_.stats;
+    stats.render_seconds = seconds();
+    stats.paths = paths_ - paths_before_;
+    stats.rays = totals_.rays;
+    stats.nonfinite = totals_.nonfinite;
+    stats.stopped = paths_ == all_ ? Stopped::done : reason_;
+    return std::move(result_);
+  }
+
+ private:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+
+  void resume(const Film& start) {
+    Film& film = result_.film;
+    const bool same =
+        start.window() == film.window() && start.key == film.key && start.scale() == film.scale();
+    const bool within =
+        start.samples.empty() || (start.samples.size() == 1 && start.samples[0].first == samples_.first &&
+                                  start.samples[0].count <= samples_.count);
+    if (!same || !within)
+      throw InputError("the film to resume is of another render; remove it or give the same options");
+    film = start;
+    finished_ = finished_samples(film, passes_);
+  }
+
+  /// Brings every row to `end` samples.
+  void run_pass(std::uint64_t end, const BandWork& work) {
+    const int bands = (window_.height() + work.height - 1) / work.height + (work.overlap ? 1 : 0);
+    const std::uint64_t begin = finished_.front();  // of all rows, where bands overlap
+#pragma omp parallel for schedule(dynamic, 1) num_threads(result_.stats.threads)
+    for (int band = 0; band < bands; ++band) {
+      const int y0 = window_.y0 + band * work.height, y1 = std::min(y0 + work.height, window_.y1);
+      const std::uint64_t done = work.overlap ? begin : finished_[static_cast<std::size_t>(y0 - window_.y0)];
+      if (done >= end || (stopped_ && !work.overlap)) continue;
+      RowStats stats;
+      const SampleRange samples{samples_.first + done, end - done};
+      work.render(y0, y1, samples, map_, result_.film, stats);
+      if (!work.overlap) std::fill(row_of(y0), row_of(y1), end);
+      paths_ += map_.total(y0, y1, samples);
+      add(stats);
+      report(nullptr);
+    }
+    if (work.overlap) std::fill(finished_.begin(), finished_.end(), std::max(begin, end));
+  }
+
+  std::vector<std::uint64_t>::iterator row_of(int y) { return finished_.begin() + (y - window_.y0); }
+
+  void add(const RowStats& stats) {
+    const std::lock_guard lock(mutex_);
+    totals_.rays += stats.rays;
+    result_.film.nonfinite_samples += stats.nonfinite.size();
+    auto& first = totals_.nonfinite;
+    first.insert(first.end(), stats.nonfinite.begin(), stats.nonfinite.end());
+    std::sort(first.begin(), first.end(), [](const NonfiniteSample& a, const NonfiniteSample& b) {
+      return std::tie(a.y, a.x, a.sample) < std::tie(b.y, b.x, b.sample);
+    });
+    if (first.size() > reported_nonfinite) first.resize(reported_nonfinite);
+  }
+
+  /// Tells the caller, unless that was done just now or is being done by another thread. `film`: where no row
+  /// is in work.
+  void report(const Film* film) {
+    const std::unique_lock lock(reporting_, std::try_to_lock);
+    if (!lock) return;
+    const double now = seconds();
+    if (options_.time_limit && now >= *options_.time_limit) stop(Stopped::time_limit);
+    if (!progress_ || (!film && now < last_report_ + seconds_between_reports)) return;
+    last_report_ = now;
+    const std::uint64_t paths = paths_;
+    const double fraction = static_cast<double>(paths) / static_cast<double>(all_);
+    if (!progress_({.fraction = fraction, .paths = paths - paths_before_, .film = film}))
+      stop(Stopped::interrupted);
+  }
+
+  void stop(Stopped reason) {
+    if (!stopped_) reason_ = reason;
+    stopped_ = true;
+  }
+
+  /// The film holds the samples up to the end of the furthest row.
+  void note_samples() {
+    const std::uint64_t most = *std::max_element(finished_.begin(), finished_.end());
+    result_.film.samples.clear();
+    if (most > 0) result_.film.samples.push_back({samples_.first, most});
+  }
+
+  const RenderOptions& options_;
+  const ProgressCallback& progress_;
+  const SampleMap& map_;
+  Window window_;
+  SampleRange samples_;
+  std::uint64_t all_ = map_.total();  ///< paths
+  Passes passes_;
+  RenderResult result_;
+  std::vector<std::uint64_t> finished_;  ///< samples of each row, counted from the first
+  Clock::time_point begin_;
+  double last_report_ = 0;
+  std::atomic<std::uint64_t> paths_ = 0;
+  std::uint64_t paths_before_ = 0;  ///< of the film that was resumed
+  RowStats totals_;
+  std::mutex mutex_, reporting_;
+  std::atomic<bool> stopped_ = false;
+  Stopped reason_ = Stopped::done;
+};
+
+}  // namespace
+
+Window window_of(const Scene& scene, const RenderOptions& options) {
+  const int width = options.width > 0 ? options.width : scene.width;
+  const int height = options.height > 0 ? options.height : scene.height;
+  Window window{width, height, 0, 0, width, height};
+  if (options.crop) {
+    window.x0 = options.crop->x0, window.y0 = options.crop->y0;
+    window.x1 = options.crop->x1, window.y1 = options.crop->y1;
+  }
+  return window;
+}
+
+int thread_count(const RenderOptions& options) {
+  return options.threads > 0 ? options.threads : available_threads();
+}
+
+SampleRange samples_of(const RenderOptions& options) {
+  return options.samples ? *options.samples : SampleRange{0, options.spp};
+}
+
+RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
+                      const Film* start, const SampleMap& map, const BandWork& work) {
+  return RowLoop(scene, options, progress, start, map).run(work);
+}
+
+void add_stats(RenderStats& sum, const RenderStats& earlier) {
+  sum.bvh_seconds += earlier.bvh_seconds;
+  sum.render_seconds += earlier.render_seconds;
+  sum.paths += earlier.paths;
+  sum.rays += earlier.rays;
+  sum.nonfinite.insert(sum.nonfinite.begin(), earlier.nonfinite.begin(), earlier.nonfinite.end());
+}
+
+}  // namespace castray

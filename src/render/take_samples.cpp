@@ -1,0 +1,122 @@
+#include "render/take_samples.h"
+
+#include <algorithm>
+
+#include "render/block_noise.h"
+
+namespace castray {
+
+namespace {
+
+/// Samples per pixel of the two films of the first pilot.
+constexpr std::uint64_t first_pilot = 2;
+/// A pilot is made of one sample to so many planned ones, and is long enough with one to the second
+/// number.
+constexpr std::uint64_t share_aimed_at = 8, share_needed = 16;
+/// A short pilot is not believed so far as to make the next one longer by more than this.
+constexpr std::uint64_t fastest_growth = 8;
+constexpr std::uint64_t last_round = 15;
+/// Pilots are the last replicates that 32-bit sample indices reach, which no image does.
+constexpr std::uint64_t last_replicate = (std::uint64_t{1} << 32) / replicate_length - 1;
+constexpr std::uint64_t most_of_image = (last_replicate - 2 * last_round - 1) * replicate_length;
+
+class TargetRun {
+ public:
+  TargetRun(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
+            const BandWork& work)
+      : scene_(scene), options_(options), progress_(progress), work_(work) {}
+
+  RenderResult run() {
+    SampleMap pilot(window_of(scene_, options_), {0, first_pilot});
+    planned_ = 2 * share_aimed_at * pilot.total();
+    for (std::uint64_t round = 0;; ++round) {
+      for (std::uint64_t side = 0; side < 2; ++side) {
+        pilot.set_first((last_replicate - 2 * round - side) * replicate_length);
+        if (!render_pilot(pilot, side)) return pilots_as_image();
+      }
+      const BlockNoise noise(pilots_[0], pilots_[1], pilot);
+      const SampleMap plan = noise.plan(*options_.target_error, std::min(options_.spp, most_of_image));
+      planned_ = stats_.paths + plan.total();
+      if (stats_.paths * share_needed >= plan.total() || round == last_round) return image(noise, plan);
+      pilot = longer_pilot(pilot, plan);
+      planned_ += 2 * pilot.total();
+    }
+  }
+
+ private:
+  /// The samples of one map, within what is left of the time. Its statistics are added up.
+  RenderResult render(const SampleMap& map) {
+    RenderOptions options = options_;
+    if (options.time_limit) *options.time_limit -= stats_.render_seconds;
+    const std::uint64_t before = stats_.paths, pilot_paths = stats_.pilot_paths;
+    RenderResult result = run_rows(
+        scene_, options,
+        [&](const Progress& p) {
+          const std::uint64_t paths = before + p.paths;
+          const double fraction = static_cast<double>(paths) / static_cast<double>(planned_);
+          return !progress_ || progress_({std::min(fraction, 1.0), paths, nullptr});
+        },
+        nullptr, map, work_);
+    add_stats(result.stats, stats_);
+    result.stats.pilot_paths = pilot_paths;
+    stats_ = result.stats;
+    return result;
+  }
+
+  /// Whether it came to its end.
+  bool render_pilot(const SampleMap& pilot, std::uint64_t side) {
+    RenderResult result = render(pilot);
+    Film& film = pilots_[side];
+    if (film.samples.empty())
+      film = std::move(result.film);
+    else
+      film.merge(result.film);
+    stats_.pilot_paths = stats_.paths;
+    return stats_.stopped == Stopped::done;
+  }
+
+  static SampleMap longer_pilot(const SampleMap& pilot, const SampleMap& plan) {
+    std::vector<std::uint64_t> counts;
+    for (std::size_t i = 0; i < plan.blocks(); ++i)
+      counts.push_back(std::min({std::max(plan.count(i) / (2 * share_aimed_at), first_pilot),
+                                 fastest_growth * pilot.count(i), replicate_length}));
+    SampleMap longer = pilot;
+    longer.set_counts(std::move(counts));
+    return longer;
+  }
+
+  /// Of a render stopped too early to have another.
+  RenderResult pilots_as_image() {
+    Film& film = pilots_[0];
+    if (!pilots_[1].samples.empty()) film.merge(pilots_[1]);
+    return {std::move(film), std::move(stats_)};
+  }
+
+  RenderResult image(const BlockNoise& noise, const SampleMap& plan) {
+    RenderResult result = render(plan);
+    result.film.nonfinite_samples += pilots_[0].nonfinite_samples + pilots_[1].nonfinite_samples;
+    result.stats.expected_error = noise.expected_error(result.film);
+    const bool reached = noise.expected_error(plan) <= *options_.target_error;
+    if (result.stats.stopped == Stopped::done && reached) result.stats.stopped = Stopped::target_error;
+    return result;
+  }
+
+  const Scene& scene_;
+  const RenderOptions& options_;
+  const ProgressCallback& progress_;
+  const BandWork& work_;
+  Film pilots_[2];
+  RenderStats stats_;          ///< of all so far
+  std::uint64_t planned_ = 0;  ///< paths from the start to the end, as far as is known
+};
+
+}  // namespace
+
+RenderResult take_samples(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
+                          const Film* start, const BandWork& work) {
+  if (options.target_error) return TargetRun(scene, options, progress, work).run();
+  const SampleMap everything(window_of(scene, options), samples_of(options));
+  return run_rows(scene, options, progress, start, everything, work);
+}
+
+}  // namespace castray

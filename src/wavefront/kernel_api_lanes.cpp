@@ -1,0 +1,34 @@
+#include "geometry/facets_lanes.h"
+#include "geometry/wide_bvh_lanes.h"
+#include "wavefront/render_tiles_lanes.h"
+#include "wavefront/tiles_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+#define CASTRAY_TEXT_(x) #x
+#define CASTRAY_TEXT(x) CASTRAY_TEXT_(x)
+
+namespace {
+
+void sample_block(bool sobol, uint32_t key, uint32_t index, uint32_t block, float* u) {
+  const Numbers<4> n = draw<4>(sobol, {Uint(key), Uint(index)}, block);
+  for (int d = 0; d < 4; ++d) u[d] = lane(n.u[d], 0);
+}
+
+}  // namespace
+
+const KernelApi& kernel_api() {
+  static const KernelApi api{CASTRAY_TEXT(CASTRAY_ISA),
+                             width,
+                             sizeof(Scratch),
+                             {render_tiles_list_diffuse, render_tiles_bvh_diffuse, render_tiles_list,
+                              render_tiles_bvh, nullptr, nullptr, nullptr, render_tiles_bvh_detail},
+                             sample_block,
+                             bvh_closest,
+                             bvh_occluded,
+                             facets_closest,
+                             facets_occluded};
+  return api;
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "simd/isa_lanes.h"
+#include "wavefront/kernel_api.h"
+
+namespace castray::CASTRAY_ISA {
+
+// One for each set of features that is compiled; the names say which.
+void render_tiles_list_diffuse(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                               TileResult&);
+void render_tiles_list(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+void render_tiles_bvh_diffuse(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                              TileResult&);
+void render_tiles_bvh(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);
+void render_tiles_bvh_detail(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                             TileResult&);
+
+}  // namespace castray::CASTRAY_ISA

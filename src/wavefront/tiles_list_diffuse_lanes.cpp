@@ -1,0 +1,11 @@
+#include "wavefront/render_tiles_lanes.h"
+#include "wavefront/tiles_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+void render_tiles_list_diffuse(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
+                               void* scratch, TileResult& result) {
+  render_tiles<0>(scene, options, job, scratch, result);
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,11 @@
+#include "wavefront/render_tiles_lanes.h"
+#include "wavefront/tiles_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+void render_tiles_list(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
+                       void* scratch, TileResult& result) {
+  render_tiles<feature_materials>(scene, options, job, scratch, result);
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,237 @@
+#include "wavefront/wavefront.h"
+
+#include <fmt/format.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <mutex>
+
+#include "core/sequences.h"
+#include "geometry/build_quality.h"
+#include "render/take_samples.h"
+#include "wavefront/kernel_scene.h"
+
+namespace castray {
+
+namespace {
+
+struct Free {
+  void operator()(void* p) const { std::free(p); }
+};
+
+/// What a thread works in.
+struct Workplace {
+  std::unique_ptr<void, Free> scratch;
+  std::vector<float> radiance;
+  std::vector<std::uint32_t> place;
+
+  explicit Workplace(const KernelApi& kernel)
+      : scratch(std::aligned_alloc(64, (kernel.scratch_bytes + 63) / 64 * 64)),
+        radiance(3 * batch_size),
+        place(2 * batch_size) {
+    std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
+  }
+  TileResult result() {
+    return {
+        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0};
+  }
+};
+
+KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
+  KernelOptions k{};
+  k.sobol = options.sampler == SamplerKind::sobol;
+  k.jitter = options.jitter;
+  k.fixed_roulette = options.rr.has_value();
+  k.survival = static_cast<float>(options.rr.value_or(1.0));
+  k.max_depth = static_cast<std::uint32_t>(options.max_depth);
+  k.most_indirect =
+      static_cast<float>(options.clamp_indirect.value_or(std::numeric_limits<double>::infinity()));
+  k.mis = plan.mis;
+  k.suffixes = plan.suffixes;
+  k.light_points = plan.light_points;
+  // from then on so many grids lie over each other that none can be told
+  constexpr std::uint64_t few_samples = 4;
+  k.ragged = plan.suffixes > 0 ? few_samples : 0;
+  k.seed =
+      hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
+  return k;
+}
+
+/// How far a sample's tiles reach over their edges.
+int reach_of(const KernelOptions& options, std::uint64_t sample) {
+  return sample < options.ragged ? ragged_reach : 0;
+}
+
+/// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
+/// sample, so that no tile's edge stays in one place.
+struct TileGrid {
+  int shift_x = 0, shift_y = 0;  ///< of the grid, to the left and up, in pixels
+  int reach;                     ///< over a tile's edges, in pixels
+  int x0, y0, x1, y1;            ///< tiles
+
+  TileGrid(const Window& window, const KernelOptions& options, std::uint64_t sample) {
+    if (options.suffixes > 0) {
+      const std::uint32_t h =
+          hash_combine(hash_combine(options.seed, 0x5b1f7u), static_cast<std::uint32_t>(sample));
+      shift_x = static_cast<int>(h % tile_size);
+      shift_y = static_cast<int>(h / tile_size % tile_size);
+    }
+    reach = reach_of(options, sample);
+    const auto tile_of = [](int pixel) {
+      return (pixel + tile_size) / tile_size - 1;
+    };  // pixel >= -tile_size
+    x0 = tile_of(window.x0 + shift_x - reach);
+    y0 = tile_of(window.y0 + shift_y - reach);
+    x1 = tile_of(window.x1 - 1 + shift_x + reach) + 1;
+    y1 = tile_of(window.y1 - 1 + shift_y + reach) + 1;
+  }
+
+  /// The first tiles of row y, from x on, of which pixels want the sample: none, if the tile at x has none.
+  TileJob job(int x, int y, std::uint64_t sample, const SampleMap& map) const {
+    const int left = x * tile_size - shift_x, top = y * tile_size - shift_y;
+    const auto wanted = [&](int tile) {
+      const int at = left + tile * tile_size;
+      return map.wants_any(at - reach, top - reach, at + tile_size + reach, top + tile_size + reach, sample);
+    };
+    int tiles = 0;
+    while (tiles < std::min(max_tiles, x1 - x) && wanted(tiles)) ++tiles;
+    return {left, top, x, y, tiles, sample};
+  }
+};
+
+/// Renders a scene tile row by tile row.
+class Wavefront {
+ public:
+  Wavefront(const Scene& scene, const RenderOptions& options, const Plan& plan)
+      : kernel_(choose_kernel(options.isa)),
+        window_(window_of(scene, options)),
+        data_(scene, plan, window_.full_width, window_.full_height, thread_count(options)),
+        options_(kernel_options(options, plan)),
+        render_tiles_(kernel_.render_tiles[plan.features]),
+        bands_((window_.height() + tile_size - 1) / tile_size + 1),
+        row_locks_(static_cast<std::size_t>(bands_)) {
+    for (int i = 0; i < thread_count(options); ++i) workplaces_.emplace_back(kernel_);
+    if (!options.jitter) find_first_hits();
+  }
+
+  const KernelApi& kernel() const { return kernel_; }
+  const KernelSceneData& data() const { return data_; }
+
+  /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
+  /// bands.
+  void render_band(int row, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
+    Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
+    TileResult result = workplace.result();
+    for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
+      const TileGrid grid(window_, options_, s);
+      for (int y = grid.y0 + row; y < grid.y1; y += bands_)
+        for (int x = grid.x0; x < grid.x1;) {
+          const TileJob job = grid.job(x, y, s, map);
+          x += std::max(job.tiles, 1);
+          if (job.tiles == 0) continue;
+          render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
+          add(job, result, map, film, stats);
+        }
+    }
+    stats.rays += result.rays;
+  }
+
+ private:
+  /// All that the tiles of any sample's grid reach.
+  void find_first_hits() {
+    constexpr int margin = 2 * tile_size;
+    FirstHits& table = data_.view.first_hits;
+    table.x0 = window_.x0 - margin;
+    table.y0 = window_.y0 - margin;
+    table.width = window_.width() + 2 * margin;
+    table.height = window_.height() + 2 * margin;
+    const std::size_t pixels = static_cast<std::size_t>(table.width) * static_cast<std::size_t>(table.height);
+    constexpr std::size_t largest = std::size_t{1} << 29;  // vectors index with 31 bits of bytes
+    if (pixels > largest) return;
+    first_hits_.resize(3 * pixels);
+    first_primitives_.resize(pixels);
+    table.t = &first_hits_[0];
+    table.b1 = &first_hits_[pixels];
+    table.b2 = &first_hits_[2 * pixels];
+    table.primitive = &first_primitives_[0];
+#pragma omp parallel for schedule(dynamic) num_threads(static_cast <int>(workplaces_.size()))
+    for (int y = 0; y < table.height; y += tile_size) {
+      Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
+      TileResult result = workplace.result();
+      for (int x = 0; x < table.width; x += max_tiles * tile_size) {
+        const TileJob job{table.x0 + x, table.y0 + y, 0, 0, max_tiles, options_.ragged};
+        render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
+      }
+    }
+    table.known = true;
+  }
+
+  /// Adds a job's samples to the film where they lie in its window and are wanted, under the locks of the
+  /// rows they share with other jobs.
+  void add(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film, RowStats& stats) {
+    const int count = job.tiles * tile_pixels;
+    const auto lock_of = [&](int y) { return (y - window_.y0) / tile_size; };
+    const int reach = reach_of(options_, job.sample);
+    const int first = std::max(job.y - reach, window_.y0);
+    const int last = std::min(job.y + tile_size + reach, window_.y1) - 1;
+    for (int l = lock_of(first); first <= last && l <= lock_of(last); ++l) {
+      const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
+      for (int i = 0; i < count; ++i) {
+        const auto x = static_cast<int>(result.x[i]), y = static_cast<int>(result.y[i]);
+        if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || lock_of(y) != l)
+          continue;
+        if (!map.wants(x, y, job.sample)) continue;
+        const Vec3f radiance{result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
+        if (is_finite(radiance))
+          film.add(x, y, radiance);
+        else
+          stats.nonfinite.push_back({x, y, job.sample});
+      }
+    }
+  }
+
+  const KernelApi& kernel_;
+  Window window_;
+  KernelSceneData data_;
+  KernelOptions options_;
+  RenderTiles render_tiles_;
+  int bands_;
+  std::vector<std::mutex> row_locks_;
+  std::vector<Workplace> workplaces_;
+  std::vector<float> first_hits_;
+  std::vector<std::uint32_t> first_primitives_;
+};
+
+std::string accel_summary(const KernelSceneData& data, const Plan& plan, std::size_t triangles) {
+  if (!data.bvh) return fmt::format("list: {} triangles as {} facets", triangles, data.facets.facets.size());
+  const BvhStats& b = data.bvh->stats();
+  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s, build {}",
+                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds, name_of(plan.build));
+}
+
+}  // namespace
+
+RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
+                              const ProgressCallback& progress, const Film* start) {
+  const Plan plan = make_plan(scene, options);
+  Wavefront wavefront(scene, options, plan);
+  const Window window = window_of(scene, options);
+  const BandWork work{
+      tile_size, true,
+      [&](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
+        wavefront.render_band((y0 - window.y0) / tile_size, samples, map, film, stats);
+      }};
+  RenderResult result = take_samples(scene, options, progress, start, work);
+  result.stats.isa = wavefront.kernel().name;
+  result.stats.kernel = plan.kernel;
+  result.stats.skipped = plan.skipped;
+  result.stats.accel_summary = accel_summary(wavefront.data(), plan, scene.triangles.size());
+  if (wavefront.data().bvh) result.stats.bvh_seconds = wavefront.data().bvh->stats().seconds;
+  return result;
+}
+
+}  // namespace castray
