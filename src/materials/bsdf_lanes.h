@@ -21,9 +21,6 @@ struct Bsdf {
   CASTRAY_INLINE Mask smooth() const { return alpha <= Float(0.f); }
 };
 
-/// Which lanes have no density to evaluate, or only for part of what they reflect.
-CASTRAY_INLINE Mask has_specular_part(const Bsdf& b) { return ~b.is(kind_diffuse) & b.smooth(); }
-
 /// f |cos| of a pair of directions, and the density of sampling the second.
 struct BsdfValue {
   Vec f_cos;

@@ -176,9 +176,10 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
     t.density[i] = cos_x * cos_y / (distance2 * distance2) * Float(1.f / pi);
     if constexpr (features & feature_materials) {
       t.weight[i] = load(tile.x.albedo, entry) * t.density[i];
-      const Uint kind = gather(&c.scene.materials->kind, load(tile.x.material + entry) & 0x7fffffffu);
-      const Mask smooth_or_rough = ~(kind == Uint(kind_diffuse)) & (length_squared(normal) > Float(0.f));
-      bool other = any(smooth_or_rough);
+      const Mask directional =
+          has_traits(c.scene, load(tile.x.material + entry) & 0x7fffffffu, trait_directional) &
+          (length_squared(normal) > Float(0.f));
+      bool other = any(directional);
       if constexpr (features & feature_detail) other = true;
       if (!other) continue;
       const Shading shading = shading_of(c.scene, tile.x, entry);
@@ -187,7 +188,7 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
       const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
       const Float geometry = cos_y * inverse * inverse * inverse;
       const Mask valid = shading.consistent(wi, local) & (length_squared(normal) > Float(0.f));
-      const Mask lanes = (features & feature_detail) ? Mask(true) : smooth_or_rough;
+      const Mask lanes = (features & feature_detail) ? Mask(true) : directional;
       t.density[i] = select(lanes, select(valid, value.pdf * geometry, Float(0.f)), t.density[i]);
       t.weight[i] = select(lanes, select(valid, value.f_cos * geometry, black()), t.weight[i]);
     }

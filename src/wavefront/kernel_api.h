@@ -46,6 +46,16 @@ struct BlockerList {
 
 enum MaterialKind : uint32_t { kind_diffuse, kind_microfacet, kind_conductor, kind_dielectric };
 
+/// What the stages have to know of a material; bits of KernelMaterial::traits.
+enum MaterialTrait : uint32_t {
+  trait_directional = 1,  ///< f depends on the directions: it is not kd / pi everywhere
+  trait_specular = 2,     ///< has a perfectly smooth lobe
+  trait_transmits = 4,    ///< light passes through the surface
+  trait_shareable = 8,  ///< neither specular nor transmitting: many points may gather through one point of it
+  trait_emits = 16,
+  trait_emits_behind = 32,  ///< on both sides
+};
+
 /// Nodes of LobeAlbedo's table: coefficients a, then b.
 inline constexpr int albedo_intervals = 128;
 struct KernelAlbedo {
@@ -60,7 +70,7 @@ struct KernelMaterial {
   float alpha;  ///< GGX width; 0 where the lobe is treated as perfectly smooth
   float ior;
   uint32_t kind;        ///< MaterialKind
-  uint32_t two_sided;   ///< emission
+  uint32_t traits;      ///< MaterialTrait set
   uint32_t albedo;      ///< microfacet: offset in floats into KernelScene::albedos
   uint32_t texture;     ///< index + 1, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area

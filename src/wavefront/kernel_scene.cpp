@@ -26,6 +26,16 @@ KernelAlbedo kernel_albedo(const LobeAlbedo& albedo) {
   return k;
 }
 
+std::uint32_t traits_of(const Material& m) {
+  const bool smooth = Ggx<double>{m.alpha}.smooth() || (m.type == MaterialType::dielectric && m.ior == 1);
+  std::uint32_t traits = 0;
+  if (m.type != MaterialType::diffuse) traits |= trait_directional | (smooth ? trait_specular : 0u);
+  if (m.type == MaterialType::dielectric) traits |= trait_transmits;
+  if (!(traits & (trait_specular | trait_transmits))) traits |= trait_shareable;
+  if (m.emits()) traits |= trait_emits | (m.two_sided_emission ? trait_emits_behind : 0u);
+  return traits;
+}
+
 KernelMaterial kernel_material(const Material& m, std::vector<KernelAlbedo>& albedos) {
   KernelMaterial k{};
   Vec3d kd = m.kd;
@@ -38,12 +48,10 @@ KernelMaterial kernel_material(const Material& m, std::vector<KernelAlbedo>& alb
   put(k.kd, kd);
   put(k.ks, m.type == MaterialType::conductor ? m.reflectance : m.ks);
   put(k.emission, m.ke);
-  k.alpha = Ggx<double>{m.alpha}.smooth() || (m.type == MaterialType::dielectric && m.ior == 1)
-                ? 0.f
-                : static_cast<float>(m.alpha);
+  k.traits = traits_of(m);
+  k.alpha = (k.traits & trait_specular) ? 0.f : static_cast<float>(m.alpha);
   k.ior = static_cast<float>(m.ior);
   k.kind = static_cast<std::uint32_t>(m.type);
-  k.two_sided = m.two_sided_emission;
   k.texture = static_cast<std::uint32_t>(m.kd_texture + 1);
   return k;
 }

@@ -82,16 +82,14 @@ CASTRAY_INLINE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t 
   }
 }
 
-/// Takes the vertices that cannot share, those with a specular part, out of `camera` into `out`.
-CASTRAY_INLINE void split_specular(const KernelScene& scene, Vertices& camera, Vertices& out) {
+/// Takes the vertices that cannot share, whose materials are not shareable, out of `camera` into `out`.
+CASTRAY_INLINE void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out) {
   out.count = 0;
   for (int i = 0; i < camera.count; i += width) {
     const Uint record = load(camera.material + i) & 0x7fffffffu;
-    const Uint kind = gather(&scene.materials->kind, record);
-    const Mask smooth = gather(&scene.materials->alpha, record) <= Float(0.f);
     const Vec normal = load(camera.normal, i);
     const Mask alone = first_lanes(camera.count - i) & (length_squared(normal) > Float(0.f)) &
-                       ((kind == Uint(kind_dielectric)) | (smooth & ~(kind == Uint(kind_diffuse))));
+                       ~has_traits(scene, record, trait_shareable);
     if (none(alone)) continue;
     compress_vertices(out, out.count, alone, camera, i);
     out.count += count(alone);
@@ -118,7 +116,7 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
   const int n = c.job.tiles * tile_pixels;
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   if constexpr (features & feature_materials) {
-    split_specular(c.scene, s.camera, s.vertices);
+    split_unshareable(c.scene, s.camera, s.vertices);
     if (s.vertices.count > 0) follow<features>(c, s, s.vertices, 0, first_roulette);
   }
   for (int tile = 0; tile < c.job.tiles; ++tile)

@@ -200,15 +200,16 @@ CASTRAY_INLINE const KernelMaterial& material_of(const KernelScene& scene, uint3
   return scene.materials[(record & 0x7fffffffu) / material_floats];
 }
 
-/// Keeps where the suffixes have landed and what is emitted there, where light sampling shares it. Only
-/// diffuse points can be shared: what other materials reflect goes on as a plain path of the pixel it came
-/// from.
+/// Keeps where the suffixes have landed and what is emitted there, where light sampling shares it.
+/// Diffuse and rough points are shared: what mirrors and glass send on goes on as a plain path of the pixel
+/// it came from.
 template <uint32_t features>
 CASTRAY_INLINE void keep_suffixes(const Context& c, Vertices& y, Suffixes& suffixes) {
   for (int k = 0; k < y.count; ++k) {
     const uint32_t suffix = y.names.slot[k] - batch_size;
     const KernelMaterial& material = material_of(c.scene, y.material[k]);
-    const bool shines = c.options.mis && (material.two_sided || y.material[k] >> 31);
+    const bool both_sides = material.traits & trait_emits_behind;
+    const bool shines = c.options.mis && (both_sides || y.material[k] >> 31);
     const float* e = material.emission;
     suffixes.landed[suffix] = 1;
     copy_entry(suffixes.p, suffix, y.p.x, y.p.y, y.p.z, k);
@@ -217,10 +218,10 @@ CASTRAY_INLINE void keep_suffixes(const Context& c, Vertices& y, Suffixes& suffi
     suffixes.emission.y[suffix] = shines ? e[1] : 0.f;
     suffixes.emission.z[suffix] = shines ? e[2] : 0.f;
     suffixes.light_density[suffix] =
-        material.light_density * (float)c.options.light_points / (material.two_sided ? 2.f : 1.f);
+        material.light_density * (float)c.options.light_points / (both_sides ? 2.f : 1.f);
     suffixes.glossy[suffix] = 0;
-    if (!(features & feature_materials) || material.kind == kind_diffuse) continue;
-    if (material.kind != kind_dielectric && material.alpha > 0) {
+    if (!(features & feature_materials) || !(material.traits & trait_directional)) continue;
+    if (material.traits & trait_shareable) {
       suffixes.glossy[suffix] = 1;
       suffixes.material[suffix] = y.material[k];
       copy_entry(suffixes.shading_normal, suffix, y.shading_normal.x, y.shading_normal.y, y.shading_normal.z,
@@ -241,9 +242,7 @@ CASTRAY_INLINE void split_glossy(const KernelScene& scene, Vertices& y, Vertices
   for (int i = 0; i < y.count; i += width) {
     const Mask active = first_lanes(y.count - i);
     const Uint record = select(active, load(y.material + i) & 0x7fffffffu, Uint(0u));
-    const Uint kind = gather(&scene.materials->kind, record);
-    const Mask glossy = active & ((kind == Uint(kind_conductor)) | (kind == Uint(kind_microfacet))) &
-                        (gather(&scene.materials->alpha, record) > Float(0.f));
+    const Mask glossy = active & has_traits(scene, record, trait_directional | trait_shareable);
     compress_vertices(out, out.count, glossy, y, i);
     compress_vertices(y, kept, active & ~glossy, y, i);
     out.count += count(glossy);

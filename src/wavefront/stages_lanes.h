@@ -80,11 +80,16 @@ CASTRAY_INLINE void camera_rays(const Context& c, const TileResult& pixels, Path
   }
 }
 
+/// Whether the material at offset `record` has all of the given traits.
+CASTRAY_INLINE Mask has_traits(const KernelScene& scene, Uint record, uint32_t traits) {
+  return (gather(&scene.materials->traits, record) & traits) == Uint(traits);
+}
+
 /// The part of a surface's own light that a ray counts (balance heuristic with light sampling).
 CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, Mask front, Float arrival,
                                   Float distance, Float cosine) {
   const KernelMaterial& first = *scene.materials;
-  const Mask shines = front | (gather(&first.two_sided, material) == Uint(1u));
+  const Mask shines = front | has_traits(scene, material, trait_emits_behind);
   const Float light_pdf = gather(&first.light_density, material) * distance * distance / abs(cosine);
   const Float share =
       select(arrival >= Float(counts_all), Float(1.f), arrival / max(arrival + light_pdf, Float(0x1p-100f)));
@@ -197,8 +202,7 @@ CASTRAY_INLINE LightPoint vertex_light_point(const Context& c, const Vertices& v
     n = draw<4>(c.options.sobol, sequence_of(vertices.names, i), choice_block(vertex));
   Mask one_sided(true);
   if constexpr (features & feature_materials)
-    one_sided = ~(gather(&c.scene.materials->kind, load(vertices.material + i) & 0x7fffffffu) ==
-                  Uint(kind_dielectric));
+    one_sided = ~has_traits(c.scene, load(vertices.material + i) & 0x7fffffffu, trait_transmits);
   const Receiver receiver = receiving_point(load(vertices.p, i), load(vertices.normal, i), one_sided);
   return sample_light(c.scene.lights, receiver, n.u[2], n.u[3], load(vertices.names.light_u + i),
                       load(vertices.names.light_v + i));
