@@ -13,6 +13,7 @@ namespace castray::CASTRAY_ISA {
 inline constexpr int capacity = batch_size + 16;  ///< compressed stores write a full vector
 
 using FloatArray = float[capacity];
+
 using UintArray = uint32_t[capacity];
 
 /// Who a path is: where its radiance is added, which random numbers it draws, and where on a light its next
@@ -86,45 +87,6 @@ struct ShadowRays {
   VecArray<capacity> o, d, radiance;
   alignas(64) UintArray slot;
   alignas(64) uint8_t blocked[capacity];
-};
-
-/// Sums of radiance; slots are those of paths: first the pixels, then the shared suffixes, then what light
-/// points send to glossy suffixes.
-struct Radiance {
-  alignas(64) float x[3 * batch_size], y[3 * batch_size], z[3 * batch_size];
-
-  CASTRAY_INLINE void clear() { __builtin_memset(this, 0, sizeof *this); }
-  CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
-
-  /// Adds in the lanes of `m`; no two of them have the same slot.
-  CASTRAY_INLINE void add(const uint32_t* slot, Mask m, Vec v) {
-    alignas(64) float r[width], g[width], b[width];
-    store(r, v.x);
-    store(g, v.y);
-    store(b, v.z);
-    for (uint32_t left = bits(m); left; left &= left - 1) {
-      const int l = __builtin_ctz(left);
-      x[slot[l]] += r[l];
-      y[slot[l]] += g[l];
-      z[slot[l]] += b[l];
-    }
-  }
-};
-
-/// Slots i to i + width - 1.
-CASTRAY_INLINE Vec load(const Radiance& r, int i) { return {load(r.x + i), load(r.y + i), load(r.z + i)}; }
-CASTRAY_INLINE void store(Radiance& r, int i, Vec v) {
-  store(r.x + i, v.x);
-  store(r.y + i, v.y);
-  store(r.z + i, v.z);
-}
-
-/// The scene, what is asked, and the running count of rays, as all stages get them.
-struct Context {
-  const KernelScene& scene;
-  const KernelOptions& options;
-  const TileJob& job;
-  uint64_t rays = 0;
 };
 
 }  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "simd/isa_lanes.h"
+#include "wavefront/kernel_api.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// The scene, what is asked, and the running count of rays, as all stages get them.
+struct Context {
+  const KernelScene& scene;
+  const KernelOptions& options;
+  const TileJob& job;
+  uint64_t rays = 0;
+};
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "wavefront/clamp_lanes.h"
+#include "wavefront/light_lanes.h"
+#include "wavefront/scatter_lanes.h"
+#include "wavefront/surfaces_lanes.h"
+
+// The stages that a batch of paths goes through, each from arrays to arrays:
+//
+//   camera_rays -> Paths -> closest -> Hits -> surfaces -> Vertices -> light -> ShadowRays -> add_unblocked
+//                    ^                                        |
+//                    +------------------- scatter <-----------+
+
+namespace castray::CASTRAY_ISA {
+
+/// Automatic roulette starts at this vertex; the same as first_roulette_vertex of the reference.
+inline constexpr uint32_t first_roulette = 2;
+
+/// A suffix serves many pixels, so it is worth following further.
+inline constexpr uint32_t first_roulette_of_suffixes = 4;
+
+CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges) {
+  return options.max_depth == 0 || edges <= options.max_depth;
+}
+
+/// Lights the vertices, which are number `vertex` of their paths, and follows the paths to their ends.
+template <uint32_t features>
+CASTRAY_INLINE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
+  const bool may_find_lights = c.options.mis || (features & feature_materials);
+  Vertices* current = &vertices;
+  for (; may_have_edges(c.options, vertex + 2); ++vertex) {
+    light<features>(c, *current, vertex, s.shadow_rays);
+    add_unblocked<features>(c, s.ends, s.shadow_rays, s.radiance);
+    if (vertex == 0) keep_direct(c, s);
+    scatter<features>(c, *current, vertex, roulette, s.paths);
+    if (s.paths.count == 0) return;
+    closest<features>(c, s.paths, s.ends, false, s.hits);
+    surfaces<features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
+    current = &s.vertices;
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

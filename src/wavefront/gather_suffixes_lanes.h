@@ -1,0 +1,99 @@
+#pragma once
+
+#include "wavefront/radiance_lanes.h"
+#include "wavefront/suffixes_lanes.h"
+#include "wavefront/tile_light_points_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+template <int N>
+CASTRAY_INLINE Vec broadcast_entry(const VecArray<N>& a, int i) {
+  return {Float(a.x[i]), Float(a.y[i]), Float(a.z[i])};
+}
+
+/// The BSDF of a glossy suffix, the same in all lanes, and its frame.
+struct GlossySuffix {
+  Bsdf bsdf;
+  Frame frame;
+  Vec normal;
+};
+
+CASTRAY_INLINE GlossySuffix glossy_suffix(const KernelScene& scene, const Suffixes& suffixes, int i) {
+  return {gather_bsdf(scene, Uint(suffixes.material[i]), broadcast_entry(suffixes.albedo, i)),
+          make_frame(broadcast_entry(suffixes.shading_normal, i)), broadcast_entry(suffixes.normal, i)};
+}
+
+/// Adds what a glossy suffix sends to each pixel: `lit` over the density, reflected from its light point;
+/// `arriving` times the stratum, reflected from the next segment, whose direction every x_k could have made
+/// y_j take; `emission`.
+CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixes, int suffix,
+                               const Gatherers& tile, const Transfer& t, const Vec& lit, const Vec& arriving,
+                               const Vec& emission, Gathered& gathered) {
+  const GlossySuffix y = glossy_suffix(scene, suffixes, suffix);
+  const Vec p = broadcast_entry(suffixes.p, suffix);
+  const Vec to_light = to_local(y.frame, broadcast_entry(suffixes.to_light, suffix));
+  const Vec onward = to_local(y.frame, broadcast_entry(suffixes.onward, suffix));
+  Float density[tile_vectors];
+  Vec reflected[tile_vectors], direct[tile_vectors];
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec wo = to_local(y.frame, normalize(load(tile.x.p, tile.first + i * width) - p));
+    const BsdfValue next = evaluate(y.bsdf, wo, onward);
+    direct[i] = evaluate(y.bsdf, wo, to_light).f_cos * lit;
+    reflected[i] = next.f_cos * arriving;
+    density[i] = select(t.density[i] > Float(0.f), t.density[i] * next.pdf, Float(0.f));
+  }
+  const float sum = ordered_sum(density);
+  const Float inverse(sum > 0 ? 1.f / sum : 0.f);
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec radiance = fma(reflected[i], inverse, direct[i]) + emission;
+    const Vec more = select(t.density[i] > Float(0.f), t.weight[i] * radiance, black());
+    store(gathered.sum, tile.first + i * width, load(gathered.sum, tile.first + i * width) + more);
+  }
+}
+
+/// Every pixel gathers from every suffix of its tile. A suffix that escaped serves the pixel it came from
+/// alone.
+template <uint32_t features>
+CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const TileBoxes* boxes,
+                                    const FarEnds& ends, const Suffixes& suffixes, const Radiance& radiance,
+                                    VisibilityScratch& s, Gathered& gathered) {
+  const float stratum = stratum_of(c.options);
+  for (int tile = 0; tile < c.job.tiles; ++tile) {
+    Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
+    for (int j = 0; j < c.options.suffixes; ++j) {
+      const int suffix = tile * tile_pixels + j, slot = batch_size + suffix,
+                origin = (int)suffixes.origin[suffix];
+      const Vec reflected = radiance.at(slot);
+      if (!suffixes.landed[suffix]) {
+        if (none(max_component(reflected) > Float(0.f))) continue;
+        const bool weighted = features & feature_materials;
+        gathered.sum.x[origin] += radiance.x[slot] * (weighted ? suffixes.weight.x[suffix] : stratum);
+        gathered.sum.y[origin] += radiance.y[slot] * (weighted ? suffixes.weight.y[suffix] : stratum);
+        gathered.sum.z[origin] += radiance.z[slot] * (weighted ? suffixes.weight.z[suffix] : stratum);
+        continue;
+      }
+      const bool glossy = (features & feature_materials) && suffixes.glossy[suffix];
+      const Vec emitted = broadcast_entry(suffixes.emission, suffix);
+      const Vec lit = glossy ? radiance.at(slot + batch_size) : black();
+      if (all(max_component(reflected + emitted + lit) <= Float(0.f))) continue;
+      Transfer t;
+      transfer<features>(c,
+                         {broadcast_entry(suffixes.p, suffix), broadcast_entry(suffixes.normal, suffix),
+                          origin - gatherers.first},
+                         gatherers, ends, s, t);
+      const float density = ordered_sum(t.density) / stratum;
+      if (!(density > 0)) continue;
+      const Vec emission = emitted * Float(1.f / (density + suffixes.light_density[suffix]));
+      if constexpr (features & feature_materials) {
+        if (glossy) {
+          add_glossy(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),
+                     reflected * Float(stratum), emission, gathered);
+          continue;
+        }
+      }
+      add_scaled<features>(gathered, gatherers.first, t, fma(reflected, Float(1.f / density), emission));
+    }
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "simd/vec_lanes.h"
+#include "wavefront/kernel_api.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Sums of radiance; slots are those of paths: first the pixels, then the shared suffixes, then what light
+/// points send to glossy suffixes.
+struct Radiance {
+  alignas(64) float x[3 * batch_size], y[3 * batch_size], z[3 * batch_size];
+
+  CASTRAY_INLINE void clear() { __builtin_memset(this, 0, sizeof *this); }
+  CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
+
+  /// Adds in the lanes of `m`; no two of them have the same slot.
+  CASTRAY_INLINE void add(const uint32_t* slot, Mask m, Vec v) {
+    alignas(64) float r[width], g[width], b[width];
+    store(r, v.x);
+    store(g, v.y);
+    store(b, v.z);
+    for (uint32_t left = bits(m); left; left &= left - 1) {
+      const int l = __builtin_ctz(left);
+      x[slot[l]] += r[l];
+      y[slot[l]] += g[l];
+      z[slot[l]] += b[l];
+    }
+  }
+};
+
+/// Slots i to i + width - 1.
+CASTRAY_INLINE Vec load(const Radiance& r, int i) { return {load(r.x + i), load(r.y + i), load(r.z + i)}; }
+
+CASTRAY_INLINE void store(Radiance& r, int i, Vec v) {
+  store(r.x + i, v.x);
+  store(r.y + i, v.y);
+  store(r.z + i, v.z);
+}
+
+}  // namespace castray::CASTRAY_ISA

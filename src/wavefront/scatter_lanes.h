@@ -1,0 +1,68 @@
+#pragma once
+
+#include "wavefront/context_lanes.h"
+#include "wavefront/sequence_keys_lanes.h"
+#include "wavefront/shading_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Survival probability of a path about to leave `vertex`; capped, even where it is fixed, so that every path
+/// ends.
+CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uint32_t first_roulette,
+                              Float brightest) {
+  constexpr float highest = 0.95f;
+  if (options.fixed_roulette)
+    return Float(vertex < 1000 || options.survival < highest ? options.survival : highest);
+  return vertex < first_roulette ? Float(1.f) : min(brightest, Float(highest));
+}
+
+/// The next ray of each path that survives the roulette.
+template <uint32_t features>
+CASTRAY_INLINE void scatter(const Context& c, const Vertices& vertices, uint32_t vertex,
+                            uint32_t first_roulette, Paths& out) {
+  out.count = 0;
+  const bool roulette = c.options.fixed_roulette || vertex >= first_roulette;
+  for (int i = 0; i < vertices.count; i += width) {
+    const Sequence sequence = sequence_of(vertices.names, i);
+    const Numbers<4> n = draw<4>(c.options.sobol, sequence, direction_block(vertex));
+    Vec throughput = load(vertices.throughput, i), o = load(vertices.p, i), wi;
+    Float arrival(0.f), eta2(1.f), brightest;
+    Numbers<2> choice{{Float(0.f), Float(0.f)}};
+    if (roulette || (features & feature_materials))
+      choice = draw<2>(c.options.sobol, sequence, choice_block(vertex));
+    if constexpr (features & feature_materials) {
+      const Shading shading = shading_of(c.scene, vertices, i);
+      const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
+      wi = to_world(shading.frame, s.wi);
+      throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
+      arrival = select(s.specular, Float(counts_all), c.options.mis ? s.pdf : Float(0.f));
+      eta2 = load(vertices.eta2 + i) * s.eta2;
+      brightest = max_component(throughput) * eta2;
+      o = leave(vertices, i, wi);
+    } else {
+      const Vec local = cosine_hemisphere(n.u[0], n.u[1]);
+      wi = to_world(make_frame(load(vertices.normal, i)), local);
+      throughput = throughput * load(vertices.albedo, i);
+      if (c.options.mis) arrival = local.z * Float(1.f / pi);
+      brightest = max_component(throughput);
+    }
+    Mask alive = first_lanes(vertices.count - i) & ~(brightest <= Float(0.f));
+    if (roulette) {
+      const Float p = survival(c.options, vertex, first_roulette, brightest);
+      alive = alive & (choice.u[0] < p);
+      throughput = throughput * (Float(1.f) / p);
+    }
+    const int k = out.count;
+    compress_store(out.o, k, alive, o);
+    compress_store(out.d, k, alive, wi);
+    compress_store(out.throughput, k, alive, throughput);
+    compress_store(out.arrival + k, alive, arrival);
+    compress_store(out.eta2 + k, alive, eta2);
+    compress_names(out.names, k, alive, vertices.names, i);
+    compress_store(out.names.light_u + k, alive, n.u[2]);
+    compress_store(out.names.light_v + k, alive, n.u[3]);
+    out.count += count(alive);
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "wavefront/gather_suffixes_lanes.h"
+#include "wavefront/light_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+struct Scratch {
+  FarEnds ends;
+  Paths paths;
+  Hits hits;
+  Vertices camera, vertices, glossy;
+  ShadowRays shadow_rays;
+  Radiance radiance;
+  Suffixes suffixes;
+  Gathered gathered;
+  VisibilityScratch visibility;
+  TileBoxes boxes[max_tiles];
+  VecArray<batch_size> direct;  ///< radiance of each pixel without what its first bounce brings
+};
+
+}  // namespace castray::CASTRAY_ISA

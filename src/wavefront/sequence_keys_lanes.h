@@ -1,0 +1,39 @@
+#pragma once
+
+#include "simd/random_lanes.h"
+#include "wavefront/context_lanes.h"
+
+// Which random numbers a path, or a shared item of a tile, draws.
+
+namespace castray::CASTRAY_ISA {
+
+/// The random numbers' block for a path vertex; the same as PathBlocks of core/sequences.h.
+constexpr uint32_t direction_block(uint32_t vertex) { return 1 + 2 * vertex; }
+
+constexpr uint32_t choice_block(uint32_t vertex) { return 2 + 2 * vertex; }
+
+/// The key's part that stands for the epoch of the sample index (see sample_block).
+CASTRAY_INLINE Uint with_epoch(Uint key, uint64_t sample) {
+  const uint32_t epoch = (uint32_t)(sample >> index_bits);
+  return epoch ? hash_combine(key, Uint(~epoch)) : key;
+}
+
+CASTRAY_INLINE uint32_t hash_once(uint32_t a, uint32_t b) { return lane(hash_combine(Uint(a), Uint(b)), 0); }
+
+CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
+  const uint32_t key = hash_once(
+      hash_once(hash_once(c.options.seed, 0x7411u), (uint32_t)(c.job.grid_x + tile)), (uint32_t)c.job.grid_y);
+  return lane(with_epoch(Uint(key), c.job.sample), 0);
+}
+
+/// Places of items of `count` (a power of two) in the sequence of a tile: each pass uses the next `count`
+/// indices, in an order of its own.
+CASTRAY_INLINE Uint tile_index(uint32_t key, uint64_t sample, Uint item, uint32_t count) {
+  const uint32_t order = hash_once(key, (uint32_t)sample);
+  const Uint low(count - 1);
+  Uint v = (item ^ Uint(order)) * ((order >> 8) | 1u);
+  v = (v ^ ((v & low) >> 2)) * ((order >> 16) | 1u);
+  return (((v + (order >> 24)) & low) + Uint((uint32_t)sample * count)) & ((1u << index_bits) - 1);
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,71 @@
+#pragma once
+
+#include "wavefront/context_lanes.h"
+#include "wavefront/gatherers_lanes.h"
+#include "wavefront/shading_lanes.h"
+
+// What the pixels of a tile get from one point that sends light to them.
+
+namespace castray::CASTRAY_ISA {
+
+/// A point that sends light to the tile, on the side of its normal. `own`: the pixel of the tile that
+/// certainly sees it, or -1.
+struct Sender {
+  Vec p, normal;
+  int own;
+};
+
+/// For each pixel of a tile: f cos cos' V / |x - y|^2, and the density, per area at y, of x's BSDF sampling
+/// finding y. Where all materials are diffuse, `weight` is not filled: it is the density times the albedo.
+struct Transfer {
+  Float density[tile_vectors];
+  Vec weight[tile_vectors];
+};
+
+/// Everything of Transfer but visibility.
+template <uint32_t features>
+CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const Gatherers& tile,
+                                        Transfer& t) {
+  for (int i = 0; i < tile_vectors; ++i) {
+    const int entry = tile.first + i * width;
+    const Vec d = load(tile.x.p, entry) - y.p, normal = load(tile.x.normal, entry);
+    const Float distance2 = max(length_squared(d), Float(0x1p-60f));
+    const Float cos_y = max(dot(y.normal, d), Float(0.f)), cos_x = max(-dot(normal, d), Float(0.f));
+    t.density[i] = cos_x * cos_y / (distance2 * distance2) * Float(1.f / pi);
+    if constexpr (features & feature_materials) {
+      t.weight[i] = load(tile.x.albedo, entry) * t.density[i];
+      const Mask directional =
+          has_traits(c.scene, load(tile.x.material + entry) & 0x7fffffffu, trait_directional) &
+          (length_squared(normal) > Float(0.f));
+      bool other = any(directional);
+      if constexpr (features & feature_detail) other = true;
+      if (!other) continue;
+      const Shading shading = shading_of(c.scene, tile.x, entry);
+      const Float inverse = Float(1.f) / sqrt(distance2);
+      const Vec wi = d * -inverse, local = to_local(shading.frame, wi);
+      const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
+      const Float geometry = cos_y * inverse * inverse * inverse;
+      const Mask valid = shading.consistent(wi, local) & (length_squared(normal) > Float(0.f));
+      const Mask lanes = (features & feature_detail) ? Mask(true) : directional;
+      t.density[i] = select(lanes, select(valid, value.pdf * geometry, Float(0.f)), t.density[i]);
+      t.weight[i] = select(lanes, select(valid, value.f_cos * geometry, black()), t.weight[i]);
+    }
+  }
+}
+
+/// Light that the pixels of a job have gathered; before their albedo, where all materials are diffuse.
+struct Gathered {
+  VecArray<batch_size> sum;
+};
+
+template <uint32_t features>
+CASTRAY_INLINE void add_scaled(Gathered& gathered, int first, const Transfer& t, const Vec& radiance) {
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec before = load(gathered.sum, first + i * width);
+    const Vec more = (features & feature_materials) ? fma_vec(radiance, t.weight[i], before)
+                                                    : fma(radiance, t.density[i], before);
+    store(gathered.sum, first + i * width, more);
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,88 @@
+#pragma once
+
+#include "geometry/hit_point_lanes.h"
+#include "wavefront/transfer_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Room for visibility tests.
+struct VisibilityScratch {
+  Shaft shaft;
+  alignas(64) uint32_t pyramids[max_blockers + 16];
+  VecArray<capacity> o, d;
+  alignas(64) UintArray pixel;
+  alignas(64) uint8_t blocked[capacity];
+};
+
+CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
+  t.density[i] = select(hidden, Float(0.f), t.density[i]);
+  if (weights) t.weight[i] = select(hidden, black(), t.weight[i]);
+}
+
+/// Takes out what is hidden from the sender, by a ray for each pixel.
+CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
+                                 VisibilityScratch& s, bool weights, Transfer& t) {
+  int n = 0;
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
+    const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
+    compress_store(s.o, n, open, y.p);
+    const int entry = tile.first + i * width;
+    compress_store(s.d, n, open,
+                   far_end<feature_bvh>(load(tile.x.p, entry), load(tile.x.normal, entry), y.p) - y.p);
+    compress_store(s.pixel + n, open, pixel);
+    n += count(open);
+  }
+  bvh_occluded(c.scene.bvh, {s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, ends.one, s.blocked, (uint32_t)n});
+  uint64_t hidden = 0;
+  for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
+  for (int i = 0; i < tile_vectors; ++i)
+    hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
+}
+
+/// From so many pyramids on it pays to choose those that matter to each part of a tile.
+inline constexpr int few_pyramids = 16;
+
+/// Takes out what is hidden from the sender.
+template <uint32_t features>
+CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, const FarEnds& ends,
+                                 VisibilityScratch& s, Transfer& t) {
+  constexpr bool weights = features & feature_materials;
+  constexpr int corners = (features & feature_bvh) ? 3 : 4;
+  if constexpr (features & feature_bvh) {
+    if (!make_shaft(c.scene.bvh, y.p, tile.boxes.all, tile.budget, s.shaft))
+      return hide_by_rays(c, y, tile, ends, s, weights, t);
+  } else {
+    make_shaft(c.scene.blocker_fields, y.p, tile.boxes.all, s.shaft);
+  }
+  if (s.shaft.count == 0) return;
+  const bool choose = (features & feature_bvh) && s.shaft.count > few_pyramids;
+  int pyramids = s.shaft.count;
+  for (int i = 0; i < tile_vectors; ++i) {
+    if (choose && i % part_vectors == 0) {
+      const Box& part = tile.boxes.part[i / part_vectors];
+      pyramids =
+          pyramids_of_part<corners>(s.shaft, broadcast(part.center) - y.p, broadcast(part.half), s.pyramids);
+    }
+    const Mask open = t.density[i] > Float(0.f);
+    if (none(open)) continue;
+    const Vec d = load(tile.x.p, tile.first + i * width) - y.p;
+    Mask hidden(false);
+    for (int b = 0; b < pyramids; ++b) {
+      hidden = hidden | hides<corners>(s.shaft, choose ? s.pyramids[b] : (uint32_t)b, d);
+      if ((b & 3) == 3 && none(open & ~hidden)) break;
+    }
+    const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
+    hide(t, i, hidden & ~own, weights);
+  }
+}
+
+template <uint32_t features>
+CASTRAY_INLINE void transfer(Context& c, const Sender& y, Gatherers& tile, const FarEnds& ends,
+                             VisibilityScratch& s, Transfer& t) {
+  unoccluded_transfer<features>(c, y, tile, t);
+  hide_blocked<features>(c, y, tile, ends, s, t);
+  c.rays += tile_pixels;
+}
+
+}  // namespace castray::CASTRAY_ISA
