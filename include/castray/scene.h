@@ -7,37 +7,10 @@
 #include <vector>
 
 #include "castray/error.h"
+#include "castray/material.h"
 #include "castray/vec.h"
 
 namespace castray {
-
-/// How a surface reflects; the definitions are in docs/materials.md.
-enum class MaterialType : std::uint8_t { diffuse, microfacet, conductor, dielectric };
-
-/// One material. Colours are linear RGB reflectances in [0,1]; `ke` is emitted radiance, >= 0.
-struct Material {
-  std::string name;
-  MaterialType type = MaterialType::diffuse;
-  Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet: albedo of the diffuse base
-  Vec3d ks{0, 0, 0};                 ///< microfacet: Schlick's F0
-  Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: constant Fresnel reflectance
-  Vec3d ke{0, 0, 0};                 ///< emitted radiance
-  double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
-  bool correlated_masking = true;    ///< false, reference integrator only: to compare with renderers without
-  double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
-  bool two_sided_emission = false;
-  int kd_texture = -1;  ///< index into Scene::textures that multiplies kd, or -1
-
-  bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
-};
-
-/// An image on a surface: linear RGB, top row first, repeated over the plane, bilinear. Its lower left corner
-/// is (u,v) = (0,0), its upper right one (1,1).
-struct Texture {
-  std::string name;
-  int width = 0, height = 0;
-  std::vector<Vec3f> texels;
-};
 
 /// A pinhole. Right-handed; `right` = `forward` x `up`. All of unit length and mutually orthogonal.
 struct Camera {
@@ -92,7 +65,9 @@ struct Scene {
   std::vector<Index3>
       triangle_normals;  ///< per triangle into normals, `no_index` where it has none; or empty
   std::vector<std::array<float, 2>> uvs;
-  std::vector<Index3> triangle_uvs;  ///< per triangle into uvs, `no_index` where it has none; or empty
+  std::vector<Index3> triangle_uvs;     ///< per triangle into uvs, `no_index` where it has none; or empty
+  std::vector<Vec3f> colors;            ///< linear RGB in [0,1], of vertices
+  std::vector<Index3> triangle_colors;  ///< per triangle into colors, `no_index` where it has none; or empty
 
   std::vector<Material> materials;
   std::vector<Texture> textures;

@@ -39,8 +39,8 @@ std::string describe(const Material& material, const Scene& scene) {
       text = fmt::format("dielectric, ior {:g}, alpha {:g}", material.ior, material.alpha);
       break;
   }
-  if (material.kd_texture >= 0) {
-    const Texture& texture = scene.textures[static_cast<std::size_t>(material.kd_texture)];
+  if (const TextureMap& map = material.map(SurfaceParameter::kd); map.used()) {
+    const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
     text += fmt::format(", kd times {} ({} x {})", texture.name, texture.width, texture.height);
   }
   if (material.emits())

@@ -1,30 +1,94 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
-#include "castray/scene.h"
+#include "castray/image.h"
+#include "castray/material.h"
 
 namespace castray {
 
-/// Bilinear look-up at (u,v), v upwards, repeated over the plane; texel centres are at half integers.
+/// A texture of a file's values: bytes where each is a whole number of 1/255, else floats, decoded as
+/// `space` says.
+Texture make_texture(std::string name, const ImageFile& file, ColorSpace space);
+
+/// A texture of linear values.
+Texture make_texture(std::string name, const Image& image);
+
+/// What a texture's bytes stand for.
+const std::array<float, 256>& byte_values(ColorSpace space);
+
+/// Red, green, blue and alpha, linear.
+using Texel = std::array<float, 4>;
+Texel texel(const Texture& texture, std::size_t index);
+
+/// The mean over the texture's area.
+Texel mean_texel(const Texture& texture);
+
+/// The four texels around a point, in rows from the top, and the point's place between their centres.
 template <class T>
-Vec3<T> lookup(const Texture& texture, T u, T v) {
-  const auto wrap = [](T x, int size) {
-    const int i = static_cast<int>(x) % size;
-    return static_cast<std::size_t>(i < 0 ? i + size : i);
+struct TexelSquare {
+  Texel texels[2][2];
+  T s, t;
+
+  /// Bilinear.
+  T value(std::size_t channel) const {
+    const T top = T(texels[0][0][channel]) * (T(1) - s) + T(texels[0][1][channel]) * s;
+    const T bottom = T(texels[1][0][channel]) * (T(1) - s) + T(texels[1][1][channel]) * s;
+    return top * (T(1) - t) + bottom * t;
+  }
+};
+
+/// x - floor(x), in [0,1]; 0 where x is so large or so odd that it has no fraction.
+template <class T>
+T fraction(T x) {
+  const T f = x - std::floor(x);
+  return f >= 0 && f <= 1 ? f : T(0);
+}
+
+/// (u,v) with v upwards, already scaled and moved as the map says.
+template <class T>
+TexelSquare<T> texels_around(const Texture& texture, bool clamp, T u, T v) {
+  const auto inside = [clamp](T x) { return clamp ? (x > 0 ? std::min(x, T(1)) : T(0)) : fraction(x); };
+  const auto index = [clamp](T x, int size) {
+    const int i = static_cast<int>(x), last = size - 1;
+    return static_cast<std::size_t>(i < 0 ? (clamp ? 0 : last) : i > last ? (clamp ? last : 0) : i);
   };
-  const T x = (u - std::floor(u)) * static_cast<T>(texture.width) - T(0.5);
-  const T y = (T(1) - (v - std::floor(v))) * static_cast<T>(texture.height) - T(0.5);
+  const T x = inside(u) * static_cast<T>(texture.width) - T(0.5);
+  const T y = (T(1) - inside(v)) * static_cast<T>(texture.height) - T(0.5);
   const T x0 = std::floor(x), y0 = std::floor(y);
-  const auto texel = [&](T tx, T ty) {
-    const std::size_t row = wrap(ty, texture.height) * static_cast<std::size_t>(texture.width);
-    return Vec3<T>(texture.texels[row + wrap(tx, texture.width)]);
-  };
-  const T s = x - x0, t = y - y0;
-  const Vec3<T> top = texel(x0, y0) * (T(1) - s) + texel(x0 + 1, y0) * s;
-  const Vec3<T> bottom = texel(x0, y0 + 1) * (T(1) - s) + texel(x0 + 1, y0 + 1) * s;
-  return top * (T(1) - t) + bottom * t;
+  TexelSquare<T> square{{}, x - x0, y - y0};
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 2; ++column)
+      square.texels[row][column] =
+          texel(texture, index(y0 + T(row), texture.height) * static_cast<std::size_t>(texture.width) +
+                             index(x0 + T(column), texture.width));
+  return square;
+}
+
+/// What a map makes of a colour, at (u,v) of the mesh.
+template <class T>
+Vec3<T> map_color(const Texture& texture, const TextureMap& map, T u, T v) {
+  const TexelSquare<T> square = texels_around(texture, map.clamp, T(map.scale[0]) * u + T(map.offset[0]),
+                                              T(map.scale[1]) * v + T(map.offset[1]));
+  const auto value = [&](std::size_t channel) { return T(map.base) + T(map.gain) * square.value(channel); };
+  switch (map.channel) {
+    case Channel::color:
+      return {value(0), value(1), value(2)};
+    case Channel::luminance:
+      return Vec3<T>(luminance(Vec3<T>(value(0), value(1), value(2))));
+    default:
+      return Vec3<T>(value(static_cast<std::size_t>(map.channel) - static_cast<std::size_t>(Channel::red)));
+  }
+}
+
+/// What a map makes of a number.
+template <class T>
+T map_number(const Texture& texture, TextureMap map, T u, T v) {
+  if (map.channel == Channel::color) map.channel = Channel::luminance;
+  return map_color(texture, map, u, v).x;
 }
 
 }  // namespace castray

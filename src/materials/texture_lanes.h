@@ -23,47 +23,142 @@ CASTRAY_INLINE Vec smooth_normal(const TriangleTable& table, Uint triangle, Floa
   return select(usable, n, facing);
 }
 
-/// Bilinear look-up at (u,v), v upwards, repeated over the plane; texel centres are at half integers.
-CASTRAY_INLINE Vec lookup(const KernelTexture& texture, Float u, Float v) {
-  const Float w((float)texture.width), h((float)texture.height);
-  const auto floor = [](Float x) {
-    const Float whole = to_float(to_uint(x));
-    return whole - select(whole > x, Float(1.f), Float(0.f));
-  };
-  const auto wrap = [](Float i, Float size) {
-    return select(i < Float(0.f), i + size, select(i >= size, i - size, i));
-  };
-  const Float x = (u - floor(u)) * w - Float(0.5f), y = (Float(1.f) - (v - floor(v))) * h - Float(0.5f);
-  const Float x0 = floor(x), y0 = floor(y), s = x - x0, t = y - y0;
-  const auto texel = [&](Float tx, Float ty) {
-    const Uint at = to_uint(wrap(ty, h)) * Uint((uint32_t)texture.width) + to_uint(wrap(tx, w));
-    return gather_vec(texture.texels, at * 3u);
-  };
-  const Vec top = texel(x0, y0) * (Float(1.f) - s) + texel(x0 + Float(1.f), y0) * s;
-  const Vec bottom =
-      texel(x0, y0 + Float(1.f)) * (Float(1.f) - s) + texel(x0 + Float(1.f), y0 + Float(1.f)) * s;
-  return top * (Float(1.f) - t) + bottom * t;
+/// Rounded down, for |x| < 2^31.
+CASTRAY_INLINE Float floor(Float x) {
+  const Float whole = to_float(to_uint(x));
+  return whole - select(whole > x, Float(1.f), Float(0.f));
 }
 
-/// What the texture of each lane's material multiplies kd by.
-CASTRAY_INLINE Vec texture_tint(const KernelScene& scene, Uint material, Uint triangle, Float b1, Float b2) {
-  const Vec white{Float(1.f), Float(1.f), Float(1.f)};
-  const TriangleTable& table = scene.triangles;
-  if (!table.uv_corners || scene.texture_count == 0) return white;
-  const Uint texture = gather(&scene.materials->texture, material);
-  const Corners corners = corners_of(table.uv_corners, triangle);
-  const Mask none = corners.a == Uint(no_corner);
-  const auto interpolate = [&](uint32_t axis) {
-    const auto at = [&](Uint i) { return gather(table.uvs, select(none, Uint(0u), i) * 2u + axis); };
-    return at(corners.a) * (Float(1.f) - b1 - b2) + at(corners.b) * b1 + at(corners.c) * b2;
-  };
-  const Float u = interpolate(0), v = interpolate(1);
-  Vec tint = white;
-  for (uint32_t k = 0; k < scene.texture_count; ++k) {
-    const Mask here = (texture == Uint(k + 1)) & ~none;
-    if (any(here)) tint = select(here, lookup(scene.textures[k], u, v), tint);
+/// x - floor(x), in [0,1]; 0 where x is so large or so odd that it has no fraction.
+CASTRAY_INLINE Float fraction(Float x) {
+  const Float small = select(abs(x) < Float(0x1p24f), x, Float(0.f));
+  return small - floor(small);
+}
+
+/// Channel `c` of the texels with these indices.
+CASTRAY_INLINE Float texel_channel(const KernelTexture& texture, Uint index, uint32_t c) {
+  const auto channels = (uint32_t)texture.channels;
+  const bool has_alpha = channels % 2 == 0;
+  if (c == 3 && !has_alpha) return Float(1.f);
+  const uint32_t place = c == 3 ? channels - 1 : channels < 3 ? 0 : c;
+  const Uint at = index * channels + place;
+  if (!texture.bytes) return gather(texture.floats, at);
+  // a word that does not reach over the end of the image
+  const Uint last = Uint((uint32_t)(texture.width * texture.height) * channels - 4u);
+  const Uint from = select(at < last, at, last);
+  const Uint byte = (gather_bytes(texture.bytes, from) >> ((at - from) << 3)) & 0xffu;
+  return c == 3 ? to_float(byte) / Float(255.f) : gather(texture.values, byte);
+}
+
+/// The four texels around each lane's point, in rows from the top, and the point's place between their
+/// centres.
+struct TexelSquare {
+  Uint index[2][2];
+  Float s, t;
+
+  /// Bilinear.
+  CASTRAY_INLINE Float value(const KernelTexture& texture, uint32_t channel) const {
+    const auto texel = [&](int row, int column) {
+      return texel_channel(texture, index[row][column], channel);
+    };
+    const Float one(1.f);
+    const Float top = texel(0, 0) * (one - s) + texel(0, 1) * s;
+    const Float bottom = texel(1, 0) * (one - s) + texel(1, 1) * s;
+    return top * (one - t) + bottom * t;
   }
-  return tint;
+};
+
+/// (u,v) with v upwards, already scaled and moved as the map says.
+CASTRAY_INLINE TexelSquare texels_around(const KernelTexture& texture, bool clamp, Float u, Float v) {
+  const Float zero(0.f), one(1.f), w((float)texture.width), h((float)texture.height);
+  const auto inside = [&](Float x) { return clamp ? select(x > zero, min(x, one), zero) : fraction(x); };
+  const auto index = [&](Float i, Float size) {
+    const Float before = clamp ? zero : size - one, after = clamp ? size - one : zero;
+    return to_uint(select(i < zero, before, select(i >= size, after, i)));
+  };
+  const Float x = inside(u) * w - Float(0.5f), y = (one - inside(v)) * h - Float(0.5f);
+  const Float x0 = floor(x), y0 = floor(y);
+  TexelSquare square{{}, x - x0, y - y0};
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 2; ++column)
+      square.index[row][column] = index(y0 + Float((float)row), h) * Uint((uint32_t)texture.width) +
+                                  index(x0 + Float((float)column), w);
+  return square;
+}
+
+/// What the map makes of a colour, or in x of a number.
+CASTRAY_INLINE Vec map_value(const KernelMap& map, Float u, Float v) {
+  const TexelSquare square =
+      texels_around(map.texture, map.clamp, fma(u, Float(map.scale[0]), Float(map.offset[0])),
+                    fma(v, Float(map.scale[1]), Float(map.offset[1])));
+  const auto value = [&](uint32_t channel) {
+    return fma(square.value(map.texture, channel), Float(map.gain), Float(map.base));
+  };
+  if (map.channel == Channel::color) return {value(0), value(1), value(2)};
+  Float one;
+  if (map.channel == Channel::luminance)
+    one = luminance(Vec{value(0), value(1), value(2)});
+  else
+    one = value((uint32_t)map.channel - (uint32_t)Channel::red);
+  return {one, one, one};
+}
+
+/// Points on triangles.
+struct TrianglePlace {
+  Uint triangle;
+  Float b1, b2;
+
+  /// Floats `axis`, of `stride` of each corner in `table`.
+  CASTRAY_INLINE Float interpolate(const float* table, const Corners& corners, Mask there, uint32_t stride,
+                                   uint32_t axis) const {
+    const auto at = [&](Uint i) { return gather(table, select(there, i, Uint(0u)) * stride + axis); };
+    return at(corners.a) * (Float(1.f) - b1 - b2) + at(corners.b) * b1 + at(corners.c) * b2;
+  }
+};
+
+/// Multiplies `value`, the floats of ParameterSlot, by what the maps of each lane's material say.
+CASTRAY_INLINE void apply_maps(const KernelScene& scene, Uint material, const TrianglePlace& at,
+                               Float* value) {
+  const TriangleTable& table = scene.triangles;
+  const Uint details = gather(&scene.materials->detail, material);
+  uint32_t left = bits(~(details == Uint(0u)));
+  if (!left) return;
+  Float u(0.f), v(0.f);
+  Mask has_uv(false), has_colors(false);
+  Corners colors{};
+  if (table.uv_corners) {
+    const Corners corners = corners_of(table.uv_corners, at.triangle);
+    has_uv = ~(corners.a == Uint(no_corner));
+    u = at.interpolate(table.uvs, corners, has_uv, 2, 0);
+    v = at.interpolate(table.uvs, corners, has_uv, 2, 1);
+  }
+  if (table.color_corners) {
+    colors = corners_of(table.color_corners, at.triangle);
+    has_colors = ~(colors.a == Uint(no_corner));
+  }
+  while (left) {  // the lanes of one material after those of another
+    const uint32_t detail = lane(details, __builtin_ctz(left));
+    const Mask here = details == Uint(detail);
+    left &= ~bits(here);
+    const KernelDetail& d = scene.details[detail - 1];
+    for (uint32_t i = 0; i < d.count; ++i) {
+      const KernelMap& map = d.maps[i];
+      const Mask valid = here & (map.is_colors ? has_colors : has_uv);
+      if (none(valid)) continue;
+      Vec factor;
+      if (map.is_colors)
+        factor = {at.interpolate(table.colors, colors, valid, 3, 0),
+                  at.interpolate(table.colors, colors, valid, 3, 1),
+                  at.interpolate(table.colors, colors, valid, 3, 2)};
+      else
+        factor = map_value(map, u, v);
+      Float* slot = value + map.slot;
+      slot[0] = select(valid, slot[0] * factor.x, slot[0]);
+      if (map.count < 3) continue;
+      slot[1] = select(valid, slot[1] * factor.y, slot[1]);
+      slot[2] = select(valid, slot[2] * factor.z, slot[2]);
+    }
+  }
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -55,7 +55,9 @@ class Surfaces {
     Surface<T> surface{
         point.p,      point.error, normal, to_viewer, frame, frame.to_local(to_viewer), materials_[material],
         hit.triangle, material};
-    if (scene_.materials[material].kd_texture >= 0) tint(surface, hit);
+    const Material& m = scene_.materials[material];
+    if (const TextureMap& map = m.map(SurfaceParameter::kd); map.used()) tint(surface, hit, map);
+    if (m.vertex_colors) tint_by_vertex(surface, hit);
     return surface;
   }
 
@@ -74,7 +76,15 @@ class Surfaces {
     return dot(smooth, to_viewer) * dot(normal, to_viewer) > 0 ? smooth : normal;
   }
 
-  void tint(Surface<T>& surface, const Hit<T>& hit) const {
+  void tint_by_vertex(Surface<T>& surface, const Hit<T>& hit) const {
+    if (scene_.triangle_colors.empty()) return;
+    const Index3& index = scene_.triangle_colors[hit.triangle];
+    if (index[0] == Scene::no_index) return;
+    surface.bsdf.tint(Vec3<T>(scene_.colors[index[0]]) * (T(1) - hit.b1 - hit.b2) +
+                      Vec3<T>(scene_.colors[index[1]]) * hit.b1 + Vec3<T>(scene_.colors[index[2]]) * hit.b2);
+  }
+
+  void tint(Surface<T>& surface, const Hit<T>& hit, const TextureMap& map) const {
     if (scene_.triangle_uvs.empty()) return;
     const Index3& index = scene_.triangle_uvs[hit.triangle];
     if (index[0] == Scene::no_index) return;
@@ -84,9 +94,8 @@ class Surfaces {
     const auto interpolate = [&](std::size_t axis) {
       return uv(0, axis) * (T(1) - hit.b1 - hit.b2) + uv(1, axis) * hit.b1 + uv(2, axis) * hit.b2;
     };
-    const int texture = scene_.materials[surface.material].kd_texture;
-    surface.bsdf.tint(
-        lookup(scene_.textures[static_cast<std::size_t>(texture)], interpolate(0), interpolate(1)));
+    surface.bsdf.tint(map_color(scene_.textures[static_cast<std::size_t>(map.texture)], map, interpolate(0),
+                                interpolate(1)));
   }
 
   const Scene& scene_;

@@ -47,6 +47,15 @@ class Hash {
   std::uint64_t state_ = 0;
 };
 
+void add_map(Hash& hash, const TextureMap& map) {
+  hash.add(map.texture);
+  if (!map.used()) return;
+  for (const float v : {map.scale[0], map.scale[1], map.offset[0], map.offset[1], map.base, map.gain})
+    hash.add(v);
+  hash.add(map.clamp);
+  hash.add(map.channel);
+}
+
 std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
   const Camera& camera = scene.camera;
@@ -62,15 +71,21 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add(scene.triangle_normals);
   hash.add(scene.uvs);
   hash.add(scene.triangle_uvs);
+  hash.add(scene.colors);
+  hash.add(scene.triangle_colors);
   for (const Material& m : scene.materials) {
     hash.add(m.type);
     for (const Vec3d& v : {m.kd, m.ks, m.reflectance, m.ke}) hash.add(v);
     hash.add(m.alpha);
     hash.add(m.ior);
     hash.add(m.two_sided_emission);
-    hash.add(m.kd_texture);
+    for (const Vec3d& v : {m.transmittance, Vec3d(m.metallic, m.coverage, m.vertex_colors)}) hash.add(v);
+    for (const TextureMap& map : m.maps) add_map(hash, map);
   }
-  for (const Texture& texture : scene.textures) hash.add(texture.width), hash.add(texture.texels);
+  for (const Texture& t : scene.textures) {
+    hash.add(t.width), hash.add(t.channels), hash.add(t.color_space);
+    hash.add(t.bytes), hash.add(t.floats);
+  }
   return hash.value();
 }
 

@@ -17,7 +17,9 @@ struct Mesh {
   std::vector<Vec3f> normals;
   std::vector<Index3> triangle_normals;  ///< empty, or per triangle; Scene::no_index where it has none
   std::vector<std::array<float, 2>> uvs;
-  std::vector<Index3> triangle_uvs;  ///< empty, or per triangle; Scene::no_index where it has none
+  std::vector<Index3> triangle_uvs;     ///< empty, or per triangle; Scene::no_index where it has none
+  std::vector<Vec3f> colors;            ///< linear RGB of vertices
+  std::vector<Index3> triangle_colors;  ///< empty, or per triangle; Scene::no_index where it has none
 };
 
 inline constexpr Index3 no_indices{Scene::no_index, Scene::no_index, Scene::no_index};

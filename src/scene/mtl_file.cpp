@@ -23,11 +23,10 @@ struct MtlMaterial {
   Vec3d ks{}, ke{};
   std::optional<double> ns{}, ni{}, roughness{}, metallic{};
   std::optional<int> illum{};
-  int kd_texture = -1;
-  UvMap uv_map{};
+  TextureMap kd_map{};
 };
 
-/// DESIGN's order: conductor, dielectric, microfacet, diffuse.
+/// The first that fits of conductor, dielectric, microfacet, diffuse.
 Material to_material(const MtlMaterial& mtl) {
   const auto illum_is = [&](std::initializer_list<int> models) {
     return mtl.illum && std::ranges::find(models, *mtl.illum) != models.end();
@@ -36,10 +35,10 @@ Material to_material(const MtlMaterial& mtl) {
   Material material;
   material.name = mtl.name;
   material.ke = mtl.ke;
-  material.kd_texture = mtl.kd_texture;
+  material.map(SurfaceParameter::kd) = mtl.kd_map;
   if (mtl.kd)
     material.kd = *mtl.kd;
-  else if (mtl.kd_texture >= 0)
+  else if (mtl.kd_map.used())
     material.kd = Vec3d(1.0);
   if (mtl.roughness)
     material.alpha = *mtl.roughness * *mtl.roughness;
@@ -71,7 +70,7 @@ class MtlReader {
     while (lines_.next_line()) read_statement();
     std::vector<std::uint16_t> indices;
     for (const MtlMaterial& material : materials_)
-      indices.push_back(builder_.add_material(to_material(material), material.uv_map));
+      indices.push_back(builder_.add_material(to_material(material)));
     return indices;
   }
 
@@ -129,8 +128,8 @@ class MtlReader {
     for (const std::string& option : texture.ignored_options) builder_.ignore(file_, "map_Kd " + option);
     const std::filesystem::path path = resolve_path(texture.file, file_);
     if (!is_file(path)) lines_.fail(fmt::format("map_Kd: no such file: {}", printable(path.string())));
-    material.kd_texture = builder_.add_texture(path);
-    material.uv_map = texture.uv_map;
+    material.kd_map = texture.map;
+    material.kd_map.texture = builder_.add_texture(path, ColorSpace::srgb);
   }
 
   std::filesystem::path file_;

@@ -32,7 +32,6 @@ class ObjReader {
 
   Mesh read() {
     while (lines_.next_line()) read_statement();
-    map_uvs();
     return std::move(mesh_);
   }
 
@@ -150,20 +149,6 @@ class ObjReader {
       mesh_.triangle_uvs.push_back({a.uv, b.uv, c.uv});
     } else if (!mesh_.triangle_uvs.empty()) {
       mesh_.triangle_uvs.push_back(no_indices);
-    }
-  }
-
-  /// Gives triangles whose material scales or moves its texture coordinates of their own.
-  void map_uvs() {
-    for (std::size_t t = 0; t < mesh_.triangle_uvs.size(); ++t) {
-      const UvMap& map = builder_.uv_map(mesh_.triangle_material[t]);
-      if (map.is_identity() || mesh_.triangle_uvs[t] == no_indices) continue;
-      for (std::uint32_t& i : mesh_.triangle_uvs[t]) {
-        std::array<float, 2> uv = mesh_.uvs[i];
-        for (std::size_t k = 0; k < 2; ++k) uv[k] = static_cast<float>(map.scale[k] * uv[k] + map.offset[k]);
-        i = static_cast<std::uint32_t>(mesh_.uvs.size());
-        mesh_.uvs.push_back(uv);
-      }
     }
   }
 

@@ -9,6 +9,7 @@
 #include "castray/error.h"
 #include "castray/image.h"
 #include "core/text.h"
+#include "materials/texture.h"
 
 namespace castray {
 
@@ -67,25 +68,23 @@ bool has_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
 
 }  // namespace
 
-std::uint16_t SceneBuilder::add_material(Material material, const UvMap& uv_map) {
+std::uint16_t SceneBuilder::add_material(Material material) {
   constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
   if (scene.materials.size() >= most)
     throw InputError(SourcePlace{scene.file.string()},
                      "more than " + std::to_string(most) + " materials; use fewer");
   scene.materials.push_back(std::move(material));
-  uv_maps_.push_back(uv_map);
   return static_cast<std::uint16_t>(scene.materials.size() - 1);
 }
 
-int SceneBuilder::add_texture(const std::filesystem::path& file) {
-  const auto [found, is_new] = textures_.try_emplace(file, static_cast<int>(scene.textures.size()));
+int SceneBuilder::add_texture(const std::filesystem::path& file, ColorSpace space) {
+  const auto [found, is_new] = textures_.try_emplace({file, space}, static_cast<int>(scene.textures.size()));
   if (is_new) {
     const ImageFile read = read_image(file);
-    Image image = decoded(read, ToneCurve{});
-    for (const Vec3f& texel : image.pixels)
+    for (const Vec3f& texel : read.image.pixels)
       if (!is_finite(texel) || std::min({texel.x, texel.y, texel.z}) < 0)
         throw InputError(SourcePlace{file.string()}, "a texture's values must be finite and at least 0");
-    scene.textures.push_back({file.filename().string(), image.width, image.height, std::move(image.pixels)});
+    scene.textures.push_back(make_texture(file.filename().string(), read, space));
   }
   return found->second;
 }
@@ -109,10 +108,12 @@ void SceneBuilder::add(Mesh&& mesh) {
   const std::size_t triangles = mesh_.triangles.size(), more = mesh.triangles.size();
   append_indices(mesh_.triangle_normals, triangles, mesh.triangle_normals, more, mesh_.normals.size());
   append_indices(mesh_.triangle_uvs, triangles, mesh.triangle_uvs, more, mesh_.uvs.size());
+  append_indices(mesh_.triangle_colors, triangles, mesh.triangle_colors, more, mesh_.colors.size());
   append_indices(mesh_.triangles, triangles, mesh.triangles, more, mesh_.positions.size());
   append(mesh_.positions, mesh.positions);
   append(mesh_.normals, mesh.normals);
   append(mesh_.uvs, mesh.uvs);
+  append(mesh_.colors, mesh.colors);
   append(mesh_.triangle_material, mesh.triangle_material);
 }
 
@@ -122,6 +123,7 @@ void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
   keep_marked(mesh_.triangle_material, keep);
   keep_marked(mesh_.triangle_normals, keep);
   keep_marked(mesh_.triangle_uvs, keep);
+  keep_marked(mesh_.triangle_colors, keep);
   scene.dropped_triangles += before - mesh_.triangles.size();
   if (!mesh_.triangles.empty()) return;
   const std::string dropped = scene.dropped_triangles == 0
@@ -211,6 +213,8 @@ Scene SceneBuilder::finish() {
   scene.triangle_normals = std::move(mesh_.triangle_normals);
   scene.uvs = std::move(mesh_.uvs);
   scene.triangle_uvs = std::move(mesh_.triangle_uvs);
+  scene.colors = std::move(mesh_.colors);
+  scene.triangle_colors = std::move(mesh_.triangle_colors);
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
   return std::move(scene);

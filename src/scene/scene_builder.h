@@ -11,24 +11,16 @@
 
 namespace castray {
 
-/// How a material's texture lies on the surface: (u,v) -> scale * (u,v) + offset.
-struct UvMap {
-  std::array<double, 2> scale{1, 1}, offset{0, 0};
-  bool is_identity() const { return *this == UvMap{}; }
-  friend bool operator==(const UvMap&, const UvMap&) = default;
-};
-
 /// Gathers a scene's meshes in double, and moves them into scene space at the end.
 class SceneBuilder {
  public:
   Scene scene;  ///< all but what `finish` fills in: geometry, lights, the camera's place
 
   /// Adds a material and returns its index. Throws InputError where there are too many to be numbered.
-  std::uint16_t add_material(Material material, const UvMap& uv_map = {});
-  const UvMap& uv_map(std::uint16_t material) const { return uv_maps_[material]; }
+  std::uint16_t add_material(Material material);
 
   /// The index of a file's texture, read when first asked for. Throws InputError.
-  int add_texture(const std::filesystem::path& file);
+  int add_texture(const std::filesystem::path& file, ColorSpace space);
 
   /// Notes a key of a file that means nothing here.
   void ignore(const std::filesystem::path& file, std::string_view key);
@@ -48,8 +40,7 @@ class SceneBuilder {
   void keep_triangles(const std::vector<bool>& keep);
 
   Mesh mesh_;
-  std::vector<UvMap> uv_maps_;  ///< one a material
-  std::map<std::filesystem::path, int> textures_;
+  std::map<std::pair<std::filesystem::path, ColorSpace>, int> textures_;
 };
 
 }  // namespace castray

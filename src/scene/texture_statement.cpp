@@ -31,8 +31,8 @@ TextureStatement read_texture_statement(LineReader& line) {
       if (!value) break;
       line.word();
       const auto axis = static_cast<std::size_t>(i);
-      if (option->name == "-s" && axis < 2) statement.uv_map.scale[axis] = *value;
-      if (option->name == "-o" && axis < 2) statement.uv_map.offset[axis] = *value;
+      if (option->name == "-s" && axis < 2) statement.map.scale[axis] = static_cast<float>(*value);
+      if (option->name == "-o" && axis < 2) statement.map.offset[axis] = static_cast<float>(*value);
     }
     if (option->name != "-s" && option->name != "-o") statement.ignored_options.emplace_back(option->name);
   }

@@ -11,7 +11,7 @@ namespace castray {
 /// "map_Kd -s 2 2 -o 0.5 wood grain.png": options, then a file name that may contain spaces.
 struct TextureStatement {
   std::string file;
-  UvMap uv_map;                              ///< of -s and -o
+  TextureMap map;                            ///< of -s and -o; the texture is still to be read
   std::vector<std::string> ignored_options;  ///< the others
 };
 

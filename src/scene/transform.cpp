@@ -58,6 +58,7 @@ void apply(const Transform& transform, Mesh& mesh) {
   turn_round(mesh.triangles);
   turn_round(mesh.triangle_normals);
   turn_round(mesh.triangle_uvs);
+  turn_round(mesh.triangle_colors);
 }
 
 }  // namespace castray

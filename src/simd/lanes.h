@@ -64,6 +64,7 @@ CASTRAY_INLINE Uint operator|(Uint a, Uint b) { return a.v | b.v; }
 CASTRAY_INLINE Uint operator^(Uint a, Uint b) { return a.v ^ b.v; }
 CASTRAY_INLINE Uint operator<<(Uint a, int n) { return a.v << n; }
 CASTRAY_INLINE Uint operator>>(Uint a, int n) { return a.v >> n; }
+CASTRAY_INLINE Uint operator>>(Uint a, Uint n) { return a.v >> n.v; }
 
 CASTRAY_INLINE Uint as_uint(Float a) { return (RawUint)a.v; }
 CASTRAY_INLINE Float as_float(Uint a) { return (RawFloat)a.v; }
@@ -248,6 +249,23 @@ CASTRAY_INLINE Mask mask_of_bits(uint32_t b) {
 }
 
 #endif
+
+/// The four bytes from `base` + i on, the first in the lowest bits.
+CASTRAY_INLINE Uint gather_bytes(const uint8_t* base, Uint i) {
+#if CASTRAY_WIDTH == 16
+  return (RawUint)_mm512_i32gather_epi32((__m512i)i.v, base, 1);
+#elif CASTRAY_WIDTH == 8
+  return (RawUint)_mm256_i32gather_epi32((const int*)base, (__m256i)i.v, 1);
+#else
+  RawUint v;
+  for (int l = 0; l < width; ++l) {
+    uint32_t word;
+    __builtin_memcpy(&word, base + i.v[l], sizeof word);
+    v[l] = word;
+  }
+  return v;
+#endif
+}
 
 /// Bit i of the result is bit 31 - i of `a`.
 CASTRAY_INLINE Uint reverse_bits(Uint a) {

@@ -3,6 +3,7 @@
 #include <stdint.h>
 
 #include "geometry/wide_bvh_view.h"
+#include "materials/kernel_material.h"
 
 // What the program and the kernels exchange: plain data and a table of functions, the same for every
 // instruction set. Everything is in scene space.
@@ -43,39 +44,6 @@ struct BlockerList {
   const float* normal[3];
   uint32_t count, padded;
 };
-
-enum MaterialKind : uint32_t { kind_diffuse, kind_microfacet, kind_conductor, kind_dielectric };
-
-/// What the stages have to know of a material; bits of KernelMaterial::traits.
-enum MaterialTrait : uint32_t {
-  trait_directional = 1,  ///< f depends on the directions: it is not kd / pi everywhere
-  trait_specular = 2,     ///< has a perfectly smooth lobe
-  trait_transmits = 4,    ///< light passes through the surface
-  trait_shareable = 8,  ///< neither specular nor transmitting: many points may gather through one point of it
-  trait_emits = 16,
-  trait_emits_behind = 32,  ///< on both sides
-};
-
-/// Nodes of LobeAlbedo's table: coefficients a, then b.
-inline constexpr int albedo_intervals = 128;
-struct KernelAlbedo {
-  float a[albedo_intervals + 1], b[albedo_intervals + 1];
-};
-inline constexpr int albedo_floats = sizeof(KernelAlbedo) / sizeof(float);
-
-struct KernelMaterial {
-  float kd[3];  ///< diffuse: albedo; microfacet: that of the base over 1 - the lobe's mean albedo
-  float ks[3];  ///< microfacet: F0; conductor: reflectance
-  float emission[3];
-  float alpha;  ///< GGX width; 0 where the lobe is treated as perfectly smooth
-  float ior;
-  uint32_t kind;        ///< MaterialKind
-  uint32_t traits;      ///< MaterialTrait set
-  uint32_t albedo;      ///< microfacet: offset in floats into KernelScene::albedos
-  uint32_t texture;     ///< index + 1, or 0
-  float light_density;  ///< of a light point on this material by light sampling, per area
-};
-inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
 
 /// A parallelogram origin + a edge1 + b edge2, 0 <= a, b <= 1; or the triangle where a + b <= 1.
 struct KernelLight {
@@ -140,12 +108,8 @@ struct TriangleTable {
   const uint32_t* normal_corners;  ///< three of each triangle, 0xffffffff: none; or null
   const float* uvs;                ///< u, v
   const uint32_t* uv_corners;      ///< likewise
-};
-
-/// Linear RGB, top row first.
-struct KernelTexture {
-  const float* texels;
-  int32_t width, height;
+  const float* colors;             ///< red, green, blue
+  const uint32_t* color_corners;   ///< likewise
 };
 
 /// What the camera's rays hit, where they are the same for all samples: a table over the pixels from (x0,y0)
@@ -167,9 +131,8 @@ struct KernelScene {
   BlockerList blocker_fields;
   WideBvhView bvh;
   TriangleTable triangles;
-  const KernelTexture* textures;
-  uint32_t texture_count;
   const KernelMaterial* materials;
+  const KernelDetail* details;
   const KernelAlbedo* albedos;
   LightList lights;
   KernelCamera camera;

@@ -6,6 +6,7 @@
 #include "lights/covered_lights.h"
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
+#include "materials/texture.h"
 
 namespace castray {
 
@@ -52,7 +53,6 @@ KernelMaterial kernel_material(const Material& m, std::vector<KernelAlbedo>& alb
   k.alpha = (k.traits & trait_specular) ? 0.f : static_cast<float>(m.alpha);
   k.ior = static_cast<float>(m.ior);
   k.kind = static_cast<std::uint32_t>(m.type);
-  k.texture = static_cast<std::uint32_t>(m.kd_texture + 1);
   return k;
 }
 
@@ -170,7 +170,39 @@ TriangleTable triangle_table(const Scene& scene, const std::vector<std::uint32_t
     table.uvs = scene.uvs.data()->data();
     table.uv_corners = scene.triangle_uvs.data()->data();
   }
+  if (!scene.triangle_colors.empty()) {
+    table.colors = &scene.colors.data()->x;
+    table.color_corners = scene.triangle_colors.data()->data();
+  }
   return table;
+}
+
+/// The texture's bytes, or null. Kernels read words of four: what has fewer gets room for that.
+const std::uint8_t* bytes_of(const Texture& texture, std::deque<std::array<std::uint8_t, 8>>& small_images) {
+  if (texture.bytes.empty()) return nullptr;
+  if (texture.bytes.size() >= 4) return texture.bytes.data();
+  std::ranges::copy(texture.bytes, small_images.emplace_back().begin());
+  return small_images.back().data();
+}
+
+KernelMap kernel_map(const TextureMap& map, const Texture& texture,
+                     std::deque<std::array<std::uint8_t, 8>>& small_images) {
+  KernelMap k{};
+  k.texture = {bytes_of(texture, small_images),
+               texture.floats.data(),
+               byte_values(texture.color_space).data(),
+               texture.width,
+               texture.height,
+               texture.channels};
+  k.slot = slot_kd;
+  k.count = 3;
+  k.clamp = map.clamp;
+  k.channel = map.channel;
+  std::ranges::copy(map.scale, k.scale);
+  std::ranges::copy(map.offset, k.offset);
+  k.base = map.base;
+  k.gain = map.gain;
+  return k;
 }
 
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {
@@ -184,7 +216,7 @@ std::vector<std::uint32_t> pack_materials(const Scene& scene) {
 
 KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads) {
   for (const Material& m : scene.materials) materials.push_back(kernel_material(m, albedos));
-  for (const Texture& t : scene.textures) textures.push_back({&t.texels.data()->x, t.width, t.height});
+  add_details(scene);
   if (plan.list) {
     facets = make_facets(scene);
     lights = shapes_of_lights(facets.facets, scene);
@@ -205,11 +237,30 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   add_lights(scene, plan, threads);
   view.materials = materials.data();
   view.albedos = albedos.data();
-  view.textures = textures.data();
-  view.texture_count = static_cast<std::uint32_t>(textures.size());
+  view.details = details.data();
   view.camera = make_kernel_camera(scene.camera, width, height);
   put(view.environment, scene.environment);
   view.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
+}
+
+void KernelSceneData::add_details(const Scene& scene) {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    std::vector<KernelMap> found;
+    if (const TextureMap& map = m.map(SurfaceParameter::kd); map.used())
+      found.push_back(kernel_map(map, scene.textures[static_cast<std::size_t>(map.texture)], small_images));
+    if (m.vertex_colors) {
+      KernelMap colors{};
+      colors.slot = slot_kd;
+      colors.count = 3;
+      colors.is_colors = 1;
+      found.push_back(colors);
+    }
+    if (found.empty()) continue;
+    maps.push_back(std::move(found));
+    details.push_back({maps.back().data(), static_cast<std::uint32_t>(maps.back().size())});
+    materials[i].detail = static_cast<std::uint32_t>(details.size());
+  }
 }
 
 void KernelSceneData::add_lights(const Scene& scene, const Plan& plan, int threads) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -25,12 +27,15 @@ struct KernelSceneData {
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   std::vector<KernelMaterial> materials;
   std::vector<KernelAlbedo> albedos;
-  std::vector<KernelTexture> textures;
+  std::vector<std::vector<KernelMap>> maps;  ///< of each of `details`
+  std::vector<KernelDetail> details;
+  std::deque<std::array<std::uint8_t, 8>> small_images;  ///< of fewer than four bytes
   std::vector<KernelLight> lights;
   LightTree light_tree;  ///< where lights are chosen by importance
   KernelScene view{};
 
  private:
+  void add_details(const Scene& scene);
   void add_lights(const Scene& scene, const Plan& plan, int threads);
 };
 

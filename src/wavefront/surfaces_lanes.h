@@ -52,7 +52,9 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
       if constexpr (features & feature_detail) {
         const Float b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
         shading_normal = smooth_normal(scene.triangles, primitive, b1, b2, facing, to_viewer);
-        albedo = albedo * texture_tint(scene, x.material, primitive, b1, b2);
+        Float value[parameter_floats] = {albedo.x, albedo.y, albedo.z};
+        apply_maps(scene, x.material, {primitive, b1, b2}, value);
+        albedo = {value[slot_kd], value[slot_kd + 1], value[slot_kd + 2]};
       }
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);

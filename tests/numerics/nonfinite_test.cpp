@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "integrators.h"
+#include "materials/texture.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -18,11 +19,12 @@ constexpr std::uint64_t spp = 64;
 /// The Cornell box whose white has a texture of 400 x 400 texels on every triangle; one is `odd`.
 Scene with_odd_texel(float odd) {
   Scene scene = standard_scene("cornell_box");
-  Texture texture{"white but for a speck", 400, 400, std::vector<Vec3f>(400 * 400, Vec3f(1))};
-  texture.texels[280 * 400 + 120] = Vec3f(odd);
-  scene.textures.push_back(std::move(texture));
+  Image white(400, 400);
+  std::ranges::fill(white.pixels, Vec3f(1));
+  white.at(120, 280) = Vec3f(odd);
+  scene.textures.push_back(make_texture("white but for a speck", white));
   for (Material& material : scene.materials)
-    if (material.name == "white") material.kd_texture = 0;
+    if (material.name == "white") material.map(SurfaceParameter::kd).texture = 0;
   scene.uvs = {{0, 0}, {1, 0}, {0, 1}};
   scene.triangle_uvs.assign(scene.triangles.size(), {0, 1, 2});
   return scene;

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "generate/shapes.h"
+#include "materials/texture.h"
 #include "reference_images.h"
 #include "test_scenes.h"
 #include "wavefront/wavefront.h"
@@ -71,9 +72,10 @@ Scene box_with(const std::function<void(Material&)>& change) {
 }
 
 Scene with_detail(Scene scene) {
-  Texture texture{"checks", 2, 2, {{1, 1, 1}, {.2f, .5f, .9f}, {.9f, .4f, .2f}, {.6f, .6f, .6f}}};
-  scene.textures.push_back(texture);
-  scene.materials[0].kd_texture = 0;
+  Image checks(2, 2);
+  checks.pixels = {{1, 1, 1}, {.2f, .5f, .9f}, {.9f, .4f, .2f}, {.6f, .6f, .6f}};
+  scene.textures.push_back(make_texture("checks", checks));
+  scene.materials[0].map(SurfaceParameter::kd).texture = 0;
   scene.uvs = {{0, 0}, {2, 0}, {0, 1.5f}};
   for (const Index3& t : scene.triangles) {
     scene.triangle_uvs.push_back({0, 1, 2});

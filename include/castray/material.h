@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "castray/surface_parameter.h"
+#include "castray/vec.h"
+
+namespace castray {
+
+/// How the values of a texture's bytes stand for light: by the curve of IEC 61966-2-1, as colours are stored,
+/// or in proportion, as data are (roughness, normals, coverage). Alpha is always linear.
+enum class ColorSpace : std::uint8_t { srgb, linear };
+
+/// An image on a surface, top row first, bilinear between the centres of its texels. Its lower left corner is
+/// (u,v) = (0,0), its upper right one (1,1). What was stored in 8 bits stays in 8 bits.
+struct Texture {
+  std::string name;
+  int width = 0, height = 0;
+  int channels = 3;                           ///< side by side: grey; grey, alpha; RGB; or RGB, alpha
+  ColorSpace color_space = ColorSpace::srgb;  ///< of `bytes`
+  std::vector<std::uint8_t> bytes{};            ///< width * height * channels; or, if empty,
+  std::vector<float> floats{};                  ///< as many linear values, >= 0
+};
+
+/// How an image gives a parameter its value at a texture coordinate (u,v):
+///
+///     constant of the material * (base + gain * texel(scale * (u,v) + offset))
+///
+/// For `normal` gain is the strength, a factor of the normal's tilt; for `bump` it is the height of the value
+/// 1 in units of the world. A triangle without texture coordinates has the constant alone.
+struct TextureMap {
+  int texture = -1;  ///< index into Scene::textures, or -1: no image
+  std::array<float, 2> scale{1, 1}, offset{0, 0};
+  bool clamp = false;  ///< outside the image its border goes on; otherwise the image repeats
+  Channel channel = Channel::color;
+  float base = 0, gain = 1;
+
+  bool used() const { return texture >= 0; }
+};
+
+/// One material. Colours are linear RGB reflectances in [0,1]; `ke` is emitted radiance, >= 0. Each type
+/// reads the parameters that docs/materials.md names.
+struct Material {
+  std::string name;
+  MaterialType type = MaterialType::diffuse;
+  Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet: albedo of the diffuse base
+  Vec3d ks{0, 0, 0};                 ///< microfacet: Schlick's F0
+  Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: constant Fresnel reflectance
+  Vec3d transmittance{1, 1, 1};      ///< dielectric: tint of what passes through the surface
+  Vec3d ke{0, 0, 0};                 ///< emitted radiance
+  double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
+  double metallic = 0;  ///< microfacet, [0,1]: the base becomes kd (1 - metallic), F0 a blend from ks to kd
+  double coverage = 1;  ///< [0,1]: the share of the surface that is there
+  bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
+  double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
+  bool two_sided_emission = false;
+  bool vertex_colors = false;  ///< Scene::colors multiply kd where the triangle has them
+
+  std::array<TextureMap, surface_parameters> maps{};  ///< by SurfaceParameter
+
+  TextureMap& map(SurfaceParameter p) { return maps[static_cast<std::size_t>(p)]; }
+  const TextureMap& map(SurfaceParameter p) const { return maps[static_cast<std::size_t>(p)]; }
+  bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
+};
+
+}  // namespace castray

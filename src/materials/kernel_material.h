@@ -1,0 +1,73 @@
+#pragma once
+
+#include "castray/surface_parameter.h"
+
+// Materials and their images as the kernels read them; plain data, the same for every instruction set.
+
+namespace castray {
+
+enum MaterialKind : uint32_t { kind_diffuse, kind_microfacet, kind_conductor, kind_dielectric };
+
+/// What the stages have to know of a material; bits of KernelMaterial::traits.
+enum MaterialTrait : uint32_t {
+  trait_directional = 1,  ///< f depends on the directions: it is not kd / pi everywhere
+  trait_specular = 2,     ///< has a perfectly smooth lobe
+  trait_transmits = 4,    ///< light passes through the surface
+  trait_shareable = 8,  ///< neither specular nor transmitting: many points may gather through one point of it
+  trait_emits = 16,
+  trait_emits_behind = 32,  ///< on both sides
+};
+
+/// Nodes of LobeAlbedo's table: coefficients a, then b.
+inline constexpr int albedo_intervals = 128;
+struct KernelAlbedo {
+  float a[albedo_intervals + 1], b[albedo_intervals + 1];
+};
+inline constexpr int albedo_floats = sizeof(KernelAlbedo) / sizeof(float);
+
+struct KernelMaterial {
+  float kd[3];  ///< diffuse: albedo; microfacet: that of the base over 1 - the lobe's mean albedo
+  float ks[3];  ///< microfacet: F0; conductor: reflectance
+  float emission[3];
+  float alpha;  ///< GGX width; 0 where the lobe is treated as perfectly smooth
+  float ior;
+  uint32_t kind;        ///< MaterialKind
+  uint32_t traits;      ///< MaterialTrait set
+  uint32_t albedo;      ///< microfacet: offset in floats into KernelScene::albedos
+  uint32_t detail;      ///< index + 1 into KernelScene::details, or 0
+  float light_density;  ///< of a light point on this material by light sampling, per area
+};
+inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
+
+/// Texels of 1 to 4 channels side by side, top row first: bytes, of which `values` has the linear value; or
+/// linear floats.
+struct KernelTexture {
+  const uint8_t* bytes;  ///< null: floats
+  const float* floats;
+  const float* values;  ///< of each byte
+  int32_t width, height, channels;
+};
+
+/// Where a surface's values stand in the array of floats that vertices carry.
+enum ParameterSlot : uint32_t { slot_kd = 0, parameter_floats = 3 };
+
+/// What multiplies a surface's value in a slot: an image, or the colours of the triangle's vertices. See
+/// TextureMap.
+struct KernelMap {
+  KernelTexture texture;
+  uint32_t slot;
+  uint32_t count;      ///< of floats in the slot
+  uint32_t is_colors;  ///< 1: the vertices' colours instead of the image
+  uint32_t clamp;
+  Channel channel;
+  float scale[2], offset[2];
+  float base, gain;
+};
+
+/// What of a material changes from point to point.
+struct KernelDetail {
+  const KernelMap* maps;
+  uint32_t count;
+};
+
+}  // namespace castray

@@ -1,0 +1,93 @@
+#include "materials/texture.h"
+
+#include "castray/error.h"
+
+namespace castray {
+
+namespace {
+
+std::array<float, 256> values_of_bytes(const ToneCurve& curve) {
+  std::array<float, 256> values;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] = static_cast<float>(curve.decode(static_cast<float>(i) / 255.f));
+  return values;
+}
+
+constexpr ToneCurve linear{ToneCurve::Kind::linear, 1};
+
+/// The image's values as whole numbers of 1/255; empty where they are not.
+std::vector<std::uint8_t> bytes_of(const Image& image) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(3 * image.pixels.size());
+  for (const Vec3f& pixel : image.pixels)
+    for (int c = 0; c < 3; ++c) {
+      const float steps = std::round(pixel[c] * 255.f);
+      if (!(steps >= 0 && steps <= 255 && steps / 255.f == pixel[c])) return {};
+      bytes.push_back(static_cast<std::uint8_t>(steps));
+    }
+  return bytes;
+}
+
+}  // namespace
+
+const std::array<float, 256>& byte_values(ColorSpace space) {
+  static const std::array<float, 256> srgb_values = values_of_bytes({}),
+                                      linear_values = values_of_bytes(linear);
+  return space == ColorSpace::srgb ? srgb_values : linear_values;
+}
+
+Texture make_texture(std::string name, const Image& image) {
+  Texture texture{.name = std::move(name),
+                  .width = image.width,
+                  .height = image.height,
+                  .channels = 3,
+                  .color_space = ColorSpace::linear};
+  texture.floats.reserve(3 * image.pixels.size());
+  for (const Vec3f& pixel : image.pixels)
+    texture.floats.insert(texture.floats.end(), {pixel.x, pixel.y, pixel.z});
+  return texture;
+}
+
+Texture make_texture(std::string name, const ImageFile& file, ColorSpace space) {
+  std::vector<std::uint8_t> bytes;
+  if (file.encoded) bytes = bytes_of(file.image);
+  if (bytes.empty())
+    return make_texture(std::move(name), decoded(file, space == ColorSpace::srgb ? ToneCurve{} : linear));
+  return {.name = std::move(name),
+          .width = file.image.width,
+          .height = file.image.height,
+          .channels = 3,
+          .color_space = space,
+          .bytes = std::move(bytes)};
+}
+
+Texel texel(const Texture& texture, std::size_t index) {
+  const auto channels = static_cast<std::size_t>(texture.channels), first = index * channels;
+  const auto& values = byte_values(texture.color_space);
+  const bool has_alpha = channels % 2 == 0;
+  const std::size_t colors = channels - (has_alpha ? 1 : 0);
+  Texel texel{0, 0, 0, 1};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t i = first + (colors == 1 ? 0 : c);
+    texel[c] = texture.bytes.empty() ? texture.floats[i] : values[texture.bytes[i]];
+  }
+  if (has_alpha) {
+    const std::size_t i = first + channels - 1;
+    texel[3] = texture.bytes.empty() ? texture.floats[i] : static_cast<float>(texture.bytes[i]) / 255.f;
+  }
+  return texel;
+}
+
+Texel mean_texel(const Texture& texture) {
+  const auto count = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
+  std::array<double, 4> sum{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Texel t = texel(texture, i);
+    for (std::size_t c = 0; c < 4; ++c) sum[c] += t[c];
+  }
+  Texel mean;
+  for (std::size_t c = 0; c < 4; ++c) mean[c] = static_cast<float>(sum[c] / static_cast<double>(count));
+  return mean;
+}
+
+}  // namespace castray
