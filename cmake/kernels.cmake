@@ -18,7 +18,7 @@ foreach(isa IN LISTS CASTRAY_ISAS)
   # GCC 12 takes the undefined operands inside its own AVX-512 header for ours; and vectors that no function here passes
   # to another set have no ABI to keep.
   target_compile_options(castray_kernels_${isa} PRIVATE ${CASTRAY_ISA_${isa}}
-    $<$<CONFIG:Release>:${CASTRAY_OPTIMISE_${isa}}> -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+    $<$<CONFIG:Release>:${CASTRAY_OPTIMISE_${isa}}> -Wno-psabi $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>)
   target_link_libraries(castray_kernels_${isa} PRIVATE castray_flags)
   target_sources(castray PRIVATE $<TARGET_OBJECTS:castray_kernels_${isa}>)
   set_property(SOURCE src/simd/isa.cpp APPEND PROPERTY COMPILE_DEFINITIONS CASTRAY_HAS_${isa})

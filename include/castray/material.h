@@ -22,8 +22,8 @@ struct Texture {
   int width = 0, height = 0;
   int channels = 3;                           ///< side by side: grey; grey, alpha; RGB; or RGB, alpha
   ColorSpace color_space = ColorSpace::srgb;  ///< of `bytes`
-  std::vector<std::uint8_t> bytes{};            ///< width * height * channels; or, if empty,
-  std::vector<float> floats{};                  ///< as many linear values, >= 0
+  std::vector<std::uint8_t> bytes{};          ///< width * height * channels; or, if empty,
+  std::vector<float> floats{};                ///< as many linear values, >= 0
 };
 
 /// How an image gives a parameter its value at a texture coordinate (u,v):
@@ -64,6 +64,15 @@ struct Material {
 
   TextureMap& map(SurfaceParameter p) { return maps[static_cast<std::size_t>(p)]; }
   const TextureMap& map(SurfaceParameter p) const { return maps[static_cast<std::size_t>(p)]; }
+  bool has_maps() const {
+    for (const TextureMap& map : maps)
+      if (map.used()) return true;
+    return false;
+  }
+  /// Whether an image changes alpha.
+  bool has_alpha_map() const {
+    return map(SurfaceParameter::alpha).used() || map(SurfaceParameter::roughness).used();
+  }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
 };
 

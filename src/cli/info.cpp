@@ -13,6 +13,7 @@
 #include "cli/image_info.h"
 #include "core/text.h"
 #include "geometry/build_quality.h"
+#include "materials/descriptor.h"
 #include "render/plan.h"
 
 namespace castray::cli {
@@ -21,31 +22,29 @@ namespace {
 
 std::string text_of(const Vec3d& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
 
-std::string describe(const Material& material, const Scene& scene) {
+/// "kd (1, 1, 1)"; empty where there is nothing to tell.
+std::string describe(const MaterialKey& key, const Material& material, const Scene& scene) {
+  using Kind = MaterialKey::Kind;
+  const Vec3d value = value_of(key, material);
+  const bool changed = key.kind != Kind::squared && value != value_of(key, Material{.name = {}});
   std::string text;
-  switch (material.type) {
-    case MaterialType::diffuse:
-      text = fmt::format("diffuse, kd {}", text_of(material.kd));
-      break;
-    case MaterialType::microfacet:
-      text = fmt::format("microfacet, kd {}, ks {}, alpha {:g}", text_of(material.kd), text_of(material.ks),
-                         material.alpha);
-      break;
-    case MaterialType::conductor:
-      text =
-          fmt::format("conductor, reflectance {}, alpha {:g}", text_of(material.reflectance), material.alpha);
-      break;
-    case MaterialType::dielectric:
-      text = fmt::format("dielectric, ior {:g}, alpha {:g}", material.ior, material.alpha);
-      break;
+  if (key.brief || changed) {
+    text = key.name;
+    if (key.kind == Kind::color) text += " " + text_of(value);
+    if (key.kind == Kind::number) text += fmt::format(" {:g}", value.x);
   }
-  if (const TextureMap& map = material.map(SurfaceParameter::kd); map.used()) {
-    const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
-    text += fmt::format(", kd times {} ({} x {})", texture.name, texture.width, texture.height);
-  }
-  if (material.emits())
-    text += fmt::format(", emits {}{}", text_of(material.ke),
-                        material.two_sided_emission ? " on both sides" : "");
+  if (!key.parameter || !material.map(*key.parameter).used()) return text;
+  const TextureMap& map = material.map(*key.parameter);
+  const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
+  return fmt::format("{} times {} ({} x {})", text.empty() ? std::string(key.name) : text,
+                     printable(texture.name), texture.width, texture.height);
+}
+
+std::string describe(const Material& material, const Scene& scene) {
+  const MaterialDescriptor& descriptor = descriptor_of(material.type);
+  std::string text(descriptor.name);
+  for (const MaterialKey& key : descriptor.keys)
+    if (const std::string part = describe(key, material, scene); !part.empty()) text += ", " + part;
   return text;
 }
 

@@ -1,11 +1,6 @@
 #pragma once
 
-#include <variant>
-
-#include "materials/conductor.h"
-#include "materials/dielectric.h"
-#include "materials/diffuse.h"
-#include "materials/microfacet.h"
+#include "materials/material_list.h"
 
 namespace castray {
 
@@ -26,14 +21,8 @@ class Bsdf {
     return std::visit([&](const auto& m) { return m.sample(wo, u_lobe, u); }, model_);
   }
 
-  /// Multiplies the diffuse reflectance, for a texture.
-  void tint(const Vec3<T>& factor) {
-    if (auto* diffuse = std::get_if<Diffuse<T>>(&model_)) diffuse->kd *= factor;
-    if (auto* microfacet = std::get_if<Microfacet<T>>(&model_)) microfacet->base *= factor;
-  }
-
  private:
-  std::variant<Diffuse<T>, Conductor<T>, Microfacet<T>, Dielectric<T>> model_;
+  AnyBsdf<T> model_;
 };
 
 }  // namespace castray

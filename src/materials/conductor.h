@@ -1,15 +1,24 @@
 #pragma once
 
 #include "materials/bsdf_sample.h"
+#include "materials/descriptor.h"
 #include "materials/ggx.h"
+#include "materials/surface_values.h"
 
 namespace castray {
+
+const MaterialDescriptor& conductor_descriptor();
 
 /// A metal of constant Fresnel reflectance R: f = R D G2 / (4 cos_i cos_o), or a mirror where smooth.
 template <class T>
 struct Conductor {
   Vec3<T> reflectance;
   Ggx<T> ggx;
+
+  static const MaterialDescriptor& descriptor() { return conductor_descriptor(); }
+  static Conductor make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo*) {
+    return {Vec3<T>(values.reflectance), {static_cast<T>(values.alpha), m.correlated_masking}};
+  }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
     const Vec3<T> wo = flip_with(wo_, wo_), wi = flip_with(wo_, wi_);

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "materials/bsdf_sample.h"
+#include "materials/descriptor.h"
 #include "materials/ggx.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -26,13 +28,23 @@ Vec3<T> refract(const Vec3<T>& w, const Vec3<T>& h, T eta) {
   return h * (cos_i / eta - cos_t) - w / eta;
 }
 
+const MaterialDescriptor& dielectric_descriptor();
+
 /// Glass: reflection and refraction by the exact Fresnel equations, smooth or through GGX facets (Walter et
-/// al. 2007). The normal points out of the medium of index `ior`. Radiance scales by (n_o / n_i)^2 where it
-/// crosses the surface.
+/// al. 2007). What passes is tinted at each crossing. The normal points out of the medium of index `ior`.
+/// Radiance scales by (n_o / n_i)^2 where it crosses the surface.
 template <class T>
 struct Dielectric {
   T ior;
   Ggx<T> ggx;
+  Vec3<T> transmittance{1};
+
+  static const MaterialDescriptor& descriptor() { return dielectric_descriptor(); }
+  static Dielectric make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo*) {
+    return {static_cast<T>(m.ior),
+            {static_cast<T>(values.alpha), m.correlated_masking},
+            Vec3<T>(values.transmittance)};
+  }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
     const Crossing c(*this, wo_, wi_);
@@ -42,8 +54,8 @@ struct Dielectric {
     if (c.reflection) return Vec3<T>(f * d * ggx.shadowing_over_cos(c.wo, c.wi));
     const Vec3<T> below = -c.wi;  // masking depends on the cosine's magnitude only
     const T facet = dot(c.wi, c.h) * dot(c.wo, c.h) / (c.denominator * c.denominator);
-    return Vec3<T>((T(1) - f) * d * 4 * ggx.shadowing_over_cos(c.wo, below) * std::abs(facet) /
-                   (c.eta * c.eta));
+    return transmittance *
+           ((T(1) - f) * d * 4 * ggx.shadowing_over_cos(c.wo, below) * std::abs(facet) / (c.eta * c.eta));
   }
 
   T pdf(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
@@ -65,8 +77,9 @@ struct Dielectric {
     const Vec3<T> wi = normalize(reflected ? reflect(wo, h) : refract(wo, h, eta));
     const T eta2 = reflected ? T(1) : eta * eta;
     if (reflected != (wi.z > 0) || wi.z == 0) return {};
+    const Vec3<T> tint = reflected ? Vec3<T>(1) : transmittance;
     if (smooth())
-      return {.weight = Vec3<T>(T(1) / eta2),
+      return {.weight = tint * (T(1) / eta2),
               .wi = flip_with(wo_, wi),
               .pdf = reflected ? f : T(1) - f,
               .specular = true,
@@ -75,7 +88,7 @@ struct Dielectric {
     const Vec3<T> up = reflected ? wi : -wi;
     const T weight = ggx.reflection_weight(wo, up, 1) / eta2;
     const Vec3<T> wi_out = flip_with(wo_, wi);
-    return {.weight = Vec3<T>(weight), .wi = wi_out, .pdf = pdf(wo_, wi_out), .eta2 = eta2};
+    return {.weight = tint * weight, .wi = wi_out, .pdf = pdf(wo_, wi_out), .eta2 = eta2};
   }
 
  private:

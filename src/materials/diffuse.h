@@ -3,13 +3,22 @@
 #include <cmath>
 
 #include "materials/bsdf_sample.h"
+#include "materials/descriptor.h"
+#include "materials/surface_values.h"
 
 namespace castray {
+
+const MaterialDescriptor& diffuse_descriptor();
 
 /// Lambert's: f = kd / pi.
 template <class T>
 struct Diffuse {
   Vec3<T> kd;
+
+  static const MaterialDescriptor& descriptor() { return diffuse_descriptor(); }
+  static Diffuse make(const SurfaceValues<double>& values, const Material&, const LobeAlbedo*) {
+    return {Vec3<T>(values.kd)};
+  }
 
   Vec3<T> evaluate(const Vec3<T>& wo, const Vec3<T>& wi) const {
     return wo.z * wi.z > 0 ? kd * (T(1) / pi<T>) : Vec3<T>();

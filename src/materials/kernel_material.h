@@ -6,8 +6,6 @@
 
 namespace castray {
 
-enum MaterialKind : uint32_t { kind_diffuse, kind_microfacet, kind_conductor, kind_dielectric };
-
 /// What the stages have to know of a material; bits of KernelMaterial::traits.
 enum MaterialTrait : uint32_t {
   trait_directional = 1,  ///< f depends on the directions: it is not kd / pi everywhere
@@ -18,6 +16,20 @@ enum MaterialTrait : uint32_t {
   trait_emits_behind = 32,  ///< on both sides
 };
 
+/// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as
+/// the models want them; the others only shape those.
+enum ParameterSlot : int {
+  slot_kd = 0,     ///< diffuse: albedo; microfacet: that of the base over 1 - the lobe's mean albedo;
+                   ///< dielectric: transmittance
+  slot_ks = 3,     ///< microfacet: F0; conductor: reflectance
+  slot_alpha = 6,  ///< GGX width; 0 where the lobe is treated as perfectly smooth
+  slot_emission = 7,
+  vertex_floats = 10,
+  slot_metallic = 10,
+  slot_coverage = 11,
+  parameter_floats = 12
+};
+
 /// Nodes of LobeAlbedo's table: coefficients a, then b.
 inline constexpr int albedo_intervals = 128;
 struct KernelAlbedo {
@@ -26,12 +38,10 @@ struct KernelAlbedo {
 inline constexpr int albedo_floats = sizeof(KernelAlbedo) / sizeof(float);
 
 struct KernelMaterial {
-  float kd[3];  ///< diffuse: albedo; microfacet: that of the base over 1 - the lobe's mean albedo
-  float ks[3];  ///< microfacet: F0; conductor: reflectance
-  float emission[3];
-  float alpha;  ///< GGX width; 0 where the lobe is treated as perfectly smooth
+  float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
+  float coverage;
   float ior;
-  uint32_t kind;        ///< MaterialKind
+  uint32_t type;        ///< MaterialType
   uint32_t traits;      ///< MaterialTrait set
   uint32_t albedo;      ///< microfacet: offset in floats into KernelScene::albedos
   uint32_t detail;      ///< index + 1 into KernelScene::details, or 0
@@ -48,16 +58,14 @@ struct KernelTexture {
   int32_t width, height, channels;
 };
 
-/// Where a surface's values stand in the array of floats that vertices carry.
-enum ParameterSlot : uint32_t { slot_kd = 0, parameter_floats = 3 };
-
 /// What multiplies a surface's value in a slot: an image, or the colours of the triangle's vertices. See
 /// TextureMap.
 struct KernelMap {
   KernelTexture texture;
-  uint32_t slot;
-  uint32_t count;      ///< of floats in the slot
+  int32_t slot;
+  int32_t count;       ///< of floats in the slot
   uint32_t is_colors;  ///< 1: the vertices' colours instead of the image
+  uint32_t squared;    ///< 1: multiplies twice
   uint32_t clamp;
   Channel channel;
   float scale[2], offset[2];
@@ -68,6 +76,10 @@ struct KernelMap {
 struct KernelDetail {
   const KernelMap* maps;
   uint32_t count;
+  MaterialType type;
+  float value[parameter_floats];  ///< as the scene has them
+  float least_alpha;              ///< where an image says less
+  float mean_albedo[2];  ///< microfacet: the lobe's mean albedo is ks times the first plus the second
 };
 
 }  // namespace castray

@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cmath>
-#include <memory>
+#include <map>
 
 #include "castray/vec.h"
 
@@ -50,6 +50,15 @@ class LobeAlbedo {
  private:
   std::array<Node, intervals + 1> nodes_;
   Node mean_;
+};
+
+/// Tables by alpha, each computed once. References stay valid.
+class LobeAlbedos {
+ public:
+  const LobeAlbedo& of(double alpha) { return tables_.try_emplace(alpha, alpha).first->second; }
+
+ private:
+  std::map<double, LobeAlbedo> tables_;
 };
 
 }  // namespace castray

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "castray/scene.h"
@@ -8,38 +7,44 @@
 
 namespace castray {
 
-/// The BSDF of each of a scene's materials, textures left out.
+/// The BSDFs of a scene's materials.
 template <class T>
 class MaterialTable {
  public:
-  explicit MaterialTable(const std::vector<Material>& materials) {
+  explicit MaterialTable(const std::vector<Material>& materials) : materials_(materials) {
     bsdfs_.reserve(materials.size());
-    for (const Material& material : materials) bsdfs_.push_back(make(material));
+    for (const Material& m : materials) {
+      const SurfaceValues<double> values(m);
+      lobes_.push_back(descriptor_of(m.type).finish ? &albedos_.of(values.alpha) : nullptr);
+      bsdfs_.push_back(make(m, values, lobes_.back()));
+    }
   }
 
+  /// Where no image changes it.
   const Bsdf<T>& operator[](std::size_t material) const { return bsdfs_[material]; }
 
- private:
-  Bsdf<T> make(const Material& m) {
-    const Ggx<T> ggx{static_cast<T>(m.alpha), m.correlated_masking};
-    switch (m.type) {
-      case MaterialType::conductor:
-        return Conductor<T>{Vec3<T>(m.reflectance), ggx};
-      case MaterialType::dielectric:
-        return Dielectric<T>{static_cast<T>(m.ior), ggx};
-      case MaterialType::microfacet: {
-        albedos_.push_back(std::make_unique<LobeAlbedo>(m.alpha));
-        const Vec3d base = m.kd / (Vec3d(1) - albedos_.back()->mean(m.ks));
-        return Microfacet<T>{Vec3<T>(base), Vec3<T>(m.ks), ggx, albedos_.back().get()};
-      }
-      case MaterialType::diffuse:
-        break;
-    }
-    return Diffuse<T>{Vec3<T>(m.kd)};
+  /// Where its parameters have these values.
+  Bsdf<T> at(std::size_t material, const SurfaceValues<T>& values) const {
+    return make(materials_[material], SurfaceValues<double>(values), lobes_[material]);
   }
 
+ private:
+  static Bsdf<T> make(const Material& m, const SurfaceValues<double>& values, const LobeAlbedo* lobe) {
+    return make_one_of(static_cast<const AnyBsdf<T>*>(nullptr), m, values, lobe);
+  }
+
+  template <class First, class... Others>
+  static Bsdf<T> make_one_of(const std::variant<First, Others...>*, const Material& m,
+                             const SurfaceValues<double>& values, const LobeAlbedo* lobe) {
+    Bsdf<T> bsdf = First::make(values, m, lobe);
+    ((m.type == Others::descriptor().type ? void(bsdf = Others::make(values, m, lobe)) : void()), ...);
+    return bsdf;
+  }
+
+  std::vector<Material> materials_;
   std::vector<Bsdf<T>> bsdfs_;
-  std::vector<std::unique_ptr<LobeAlbedo>> albedos_;
+  LobeAlbedos albedos_;
+  std::vector<const LobeAlbedo*> lobes_;
 };
 
 }  // namespace castray

@@ -3,10 +3,25 @@
 #include <algorithm>
 
 #include "materials/bsdf_sample.h"
+#include "materials/descriptor.h"
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
+#include "materials/surface_values.h"
 
 namespace castray {
+
+const MaterialDescriptor& microfacet_descriptor();
+
+/// The coat's reflectance straight on, and the base's albedo over what the coat leaves on the mean.
+struct CoatAndBase {
+  Vec3d f0, base;
+};
+
+/// Blends the coated base with a metal whose reflectance is the base's colour.
+inline CoatAndBase mix_metal(const Vec3d& kd, const Vec3d& ks, double metallic, const LobeAlbedo& lobe) {
+  const Vec3d f0 = ks + (kd - ks) * metallic;
+  return {f0, kd * (1 - metallic) / (Vec3d(1) - lobe.mean(f0))};
+}
 
 /// Cook and Torrance's: a GGX lobe with Schlick's Fresnel term, F0 = ks, over a diffuse base that gets what
 /// the lobe leaves (the energy-conserving, reciprocal coupling of Kelemen and Szirmay-Kalos 2001):
@@ -20,6 +35,13 @@ struct Microfacet {
   Vec3<T> f0;
   Ggx<T> ggx;
   const LobeAlbedo* albedo;  ///< of ggx.alpha; not owned
+
+  static const MaterialDescriptor& descriptor() { return microfacet_descriptor(); }
+  static Microfacet make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo* lobe) {
+    const CoatAndBase mixed = mix_metal(values.kd, values.ks, values.metallic, *lobe);
+    return {
+        Vec3<T>(mixed.base), Vec3<T>(mixed.f0), {static_cast<T>(values.alpha), m.correlated_masking}, lobe};
+  }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
     const Vec3<T> wo = flip_with(wo_, wo_), wi = flip_with(wo_, wi_);

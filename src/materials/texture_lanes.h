@@ -116,49 +116,4 @@ struct TrianglePlace {
   }
 };
 
-/// Multiplies `value`, the floats of ParameterSlot, by what the maps of each lane's material say.
-CASTRAY_INLINE void apply_maps(const KernelScene& scene, Uint material, const TrianglePlace& at,
-                               Float* value) {
-  const TriangleTable& table = scene.triangles;
-  const Uint details = gather(&scene.materials->detail, material);
-  uint32_t left = bits(~(details == Uint(0u)));
-  if (!left) return;
-  Float u(0.f), v(0.f);
-  Mask has_uv(false), has_colors(false);
-  Corners colors{};
-  if (table.uv_corners) {
-    const Corners corners = corners_of(table.uv_corners, at.triangle);
-    has_uv = ~(corners.a == Uint(no_corner));
-    u = at.interpolate(table.uvs, corners, has_uv, 2, 0);
-    v = at.interpolate(table.uvs, corners, has_uv, 2, 1);
-  }
-  if (table.color_corners) {
-    colors = corners_of(table.color_corners, at.triangle);
-    has_colors = ~(colors.a == Uint(no_corner));
-  }
-  while (left) {  // the lanes of one material after those of another
-    const uint32_t detail = lane(details, __builtin_ctz(left));
-    const Mask here = details == Uint(detail);
-    left &= ~bits(here);
-    const KernelDetail& d = scene.details[detail - 1];
-    for (uint32_t i = 0; i < d.count; ++i) {
-      const KernelMap& map = d.maps[i];
-      const Mask valid = here & (map.is_colors ? has_colors : has_uv);
-      if (none(valid)) continue;
-      Vec factor;
-      if (map.is_colors)
-        factor = {at.interpolate(table.colors, colors, valid, 3, 0),
-                  at.interpolate(table.colors, colors, valid, 3, 1),
-                  at.interpolate(table.colors, colors, valid, 3, 2)};
-      else
-        factor = map_value(map, u, v);
-      Float* slot = value + map.slot;
-      slot[0] = select(valid, slot[0] * factor.x, slot[0]);
-      if (map.count < 3) continue;
-      slot[1] = select(valid, slot[1] * factor.y, slot[1]);
-      slot[2] = select(valid, slot[2] * factor.z, slot[2]);
-    }
-  }
-}
-
 }  // namespace castray::CASTRAY_ISA

@@ -96,7 +96,7 @@ class CastRay {
     const Material& material = scene_.materials[x.material];
     const T cosine = dot(x.normal, x.to_viewer);
     if (!arrival.counts || !material.emits() || !(cosine > 0 || material.two_sided_emission)) return {};
-    const Vec3<T> le(material.ke);
+    const Vec3<T>& le = x.emission;
     if (!arrival.shared) return le;
     const T light_pdf = lights_.pdf_area(x.material) * distance * distance / std::abs(cosine);
     return le * balance(arrival.pdf, light_pdf);

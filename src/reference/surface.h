@@ -6,7 +6,7 @@
 #include "core/frame.h"
 #include "geometry/ray.h"
 #include "materials/material_table.h"
-#include "materials/texture.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -19,6 +19,7 @@ struct Surface {
   Frame<T> frame;     ///< of the shading normal
   Vec3<T> wo;         ///< to_viewer in the shading frame
   Bsdf<T> bsdf;
+  Vec3<T> emission;  ///< of the side that emits
   std::uint32_t triangle = Scene::no_index;
   std::uint16_t material = 0;
 
@@ -52,12 +53,23 @@ class Surfaces {
     const Vec3<T>& normal = normals_[hit.triangle];
     const Vec3<T> to_viewer = -ray.direction;
     const Frame<T> frame = make_frame(shading_normal(hit, normal, to_viewer));
-    Surface<T> surface{
-        point.p,      point.error, normal, to_viewer, frame, frame.to_local(to_viewer), materials_[material],
-        hit.triangle, material};
     const Material& m = scene_.materials[material];
-    if (const TextureMap& map = m.map(SurfaceParameter::kd); map.used()) tint(surface, hit, map);
-    if (m.vertex_colors) tint_by_vertex(surface, hit);
+    const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
+    Surface<T> surface{point.p,
+                       point.error,
+                       normal,
+                       to_viewer,
+                       frame,
+                       frame.to_local(to_viewer),
+                       materials_[material],
+                       Vec3<T>(m.ke),
+                       hit.triangle,
+                       material};
+    if (m.has_maps() || m.vertex_colors) {
+      const SurfaceValues<T> values = surface_values(scene_, m, place);
+      surface.bsdf = materials_.at(material, values);
+      surface.emission = values.ke;
+    }
     return surface;
   }
 
@@ -74,28 +86,6 @@ class Surfaces {
     if (!is_finite(smooth)) return normal;
     if (dot(smooth, normal) < 0) smooth = -smooth;
     return dot(smooth, to_viewer) * dot(normal, to_viewer) > 0 ? smooth : normal;
-  }
-
-  void tint_by_vertex(Surface<T>& surface, const Hit<T>& hit) const {
-    if (scene_.triangle_colors.empty()) return;
-    const Index3& index = scene_.triangle_colors[hit.triangle];
-    if (index[0] == Scene::no_index) return;
-    surface.bsdf.tint(Vec3<T>(scene_.colors[index[0]]) * (T(1) - hit.b1 - hit.b2) +
-                      Vec3<T>(scene_.colors[index[1]]) * hit.b1 + Vec3<T>(scene_.colors[index[2]]) * hit.b2);
-  }
-
-  void tint(Surface<T>& surface, const Hit<T>& hit, const TextureMap& map) const {
-    if (scene_.triangle_uvs.empty()) return;
-    const Index3& index = scene_.triangle_uvs[hit.triangle];
-    if (index[0] == Scene::no_index) return;
-    const auto uv = [&](std::size_t corner, std::size_t axis) {
-      return static_cast<T>(scene_.uvs[index[corner]][axis]);
-    };
-    const auto interpolate = [&](std::size_t axis) {
-      return uv(0, axis) * (T(1) - hit.b1 - hit.b2) + uv(1, axis) * hit.b1 + uv(2, axis) * hit.b2;
-    };
-    surface.bsdf.tint(map_color(scene_.textures[static_cast<std::size_t>(map.texture)], map, interpolate(0),
-                                interpolate(1)));
   }
 
   const Scene& scene_;

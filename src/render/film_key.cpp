@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "materials/descriptor.h"
 #include "render/row_loop.h"
 
 namespace castray {
@@ -75,12 +76,11 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add(scene.triangle_colors);
   for (const Material& m : scene.materials) {
     hash.add(m.type);
-    for (const Vec3d& v : {m.kd, m.ks, m.reflectance, m.ke}) hash.add(v);
-    hash.add(m.alpha);
-    hash.add(m.ior);
-    hash.add(m.two_sided_emission);
-    for (const Vec3d& v : {m.transmittance, Vec3d(m.metallic, m.coverage, m.vertex_colors)}) hash.add(v);
-    for (const TextureMap& map : m.maps) add_map(hash, map);
+    for (const MaterialKey& key : descriptor_of(m.type).keys) {
+      hash.add(value_of(key, m));
+      if (key.parameter) add_map(hash, m.map(*key.parameter));
+    }
+    hash.add(m.correlated_masking);
   }
   for (const Texture& t : scene.textures) {
     hash.add(t.width), hash.add(t.channels), hash.add(t.color_space);

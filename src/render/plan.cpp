@@ -1,6 +1,9 @@
 #include "render/plan.h"
 
+#include <set>
+
 #include "geometry/build_quality.h"
+#include "materials/descriptor.h"
 #include "reference/estimator.h"
 #include "render/row_loop.h"
 #include "scene/needs.h"
@@ -50,7 +53,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
   Plan plan;
   plan.list = use_list(needs, options);
   const bool detail = needs.textures || needs.smooth_normals || (options.generic && !plan.list);
-  const bool materials = detail || needs.conductor || needs.microfacet || needs.dielectric || options.generic;
+  const bool materials = detail || options.generic || needs.types != std::set{MaterialType::diffuse};
   plan.features =
       (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
   plan.mis = uses_mis(options.mis, needs.emitting_share);
@@ -60,16 +63,15 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options);
   plan.kernel = kernel_name(plan);
-  const auto skip = [&plan](bool needed, const char* what) {
+  const auto skip = [&plan](bool needed, std::string_view what) {
     if (!needed) plan.skipped.emplace_back(what);
   };
   skip(!plan.list, "tree");
   skip(plan.list || plan.build == BuildQuality::best, "cut boxes");
   skip(detail || needs.textures, "textures");
   skip(detail || needs.smooth_normals, "smooth normals");
-  skip(materials || needs.microfacet, "microfacet");
-  skip(materials || needs.conductor, "conductor");
-  skip(materials || needs.dielectric, "dielectric");
+  for (const MaterialDescriptor* material : material_descriptors())
+    if (material->type != MaterialType::diffuse) skip(materials, material->name);
   skip(needs.environment, "environment");
   skip(needs.lights > 1, "choice among lights");
   skip(plan.mis, "multiple importance sampling");

@@ -1,24 +1,14 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "castray/vec.h"
+#include "core/range.h"
 #include "scene/json_document.h"
 
 namespace castray {
-
-/// Bounds of a number; those named `above` and `below` are themselves outside.
-struct Range {
-  double least = -std::numeric_limits<double>::max();
-  double greatest = std::numeric_limits<double>::max();
-  bool above_least = false, below_greatest = false;
-
-  bool contains(double value) const;
-  std::string text() const;
-};
 
 // Each throws InputError with the node's place where the node is of another type or out of range. `name` is
 // what the message calls the value.

@@ -1,7 +1,5 @@
 #include "scene/needs.h"
 
-#include <algorithm>
-
 namespace castray {
 
 namespace {
@@ -34,11 +32,9 @@ SceneNeeds needs_of(const Scene& scene) {
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     const Material& m = scene.materials[i];
-    needs.textures |= std::ranges::any_of(m.maps, &TextureMap::used) && !scene.triangle_uvs.empty();
+    needs.textures |= m.has_maps() && !scene.triangle_uvs.empty();
     needs.textures |= m.vertex_colors && !scene.triangle_colors.empty();
-    needs.microfacet |= m.type == MaterialType::microfacet;
-    needs.conductor |= m.type == MaterialType::conductor;
-    needs.dielectric |= m.type == MaterialType::dielectric;
+    needs.types.insert(m.type);
   }
   return needs;
 }

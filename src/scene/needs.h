@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 
 #include "castray/scene.h"
 
@@ -10,7 +11,7 @@ namespace castray {
 struct SceneNeeds {
   std::size_t triangles = 0, lights = 0;  ///< lights: emitting triangles
   bool textures = false, smooth_normals = false;
-  bool microfacet = false, conductor = false, dielectric = false;
+  std::set<MaterialType> types;  ///< of materials
   bool environment = false;
   double emitting_share = 0;  ///< of the scene's surface area
 };

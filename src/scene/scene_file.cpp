@@ -8,7 +8,9 @@
 #include "core/files.h"
 #include "core/nearest.h"
 #include "core/text.h"
+#include "materials/descriptor.h"
 #include "scene/json_reader.h"
+#include "scene/material_reader.h"
 #include "scene/obj_file.h"
 #include "scene/scene_builder.h"
 #include "scene/transform.h"
@@ -17,32 +19,10 @@ namespace castray {
 
 namespace {
 
-constexpr Range unit_range{.least = 0, .greatest = 1};
-constexpr Range not_negative{.least = 0};
-constexpr Range positive{.least = 0, .above_least = true};
-
 const std::vector<std::string_view>& keys_of(std::string_view section) {
   for (const SceneSection& known : scene_sections())
     if (known.name == section) return known.keys;
   throw std::logic_error("no such section");
-}
-
-struct TypeName {
-  std::string_view name;
-  MaterialType type;
-};
-constexpr TypeName material_types[] = {{"diffuse", MaterialType::diffuse},
-                                       {"microfacet", MaterialType::microfacet},
-                                       {"conductor", MaterialType::conductor},
-                                       {"dielectric", MaterialType::dielectric}};
-
-/// The index of `name` among `names`, or an error that suggests the nearest.
-std::size_t choose(const JsonNode& node, std::string_view name, const std::vector<std::string_view>& names) {
-  const std::string& text = read_string(node, name);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == text) return i;
-  throw InputError(node.place,
-                   fmt::format("unknown {} '{}'{}", name, printable(text), suggestion(text, names)));
 }
 
 std::string flag_value(const JsonNode& node, std::string_view name) {
@@ -134,42 +114,7 @@ class SceneFileReader {
     if (node.type != JsonNode::Type::object)
       throw InputError(node.place, fmt::format("\"materials\" must be an object, not {}", node.type_name()));
     for (const JsonNode& member : node.children)
-      material_indices_[member.key] = builder_.add_material(read_material(member));
-  }
-
-  Material read_material(const JsonNode& node) {
-    std::vector<std::string_view> all_keys, type_names;
-    for (const TypeName& known : material_types) {
-      type_names.push_back(known.name);
-      for (std::string_view key : keys_of(known.name)) all_keys.push_back(key);
-    }
-    const std::string name = fmt::format("material '{}'", printable(node.key));
-    // First the type, as the keys depend on it.
-    const ObjectReader any(node, name, all_keys);
-    const std::size_t type = choose(any.require("type"), "material type", type_names);
-    const ObjectReader reader(node, fmt::format("{} ({})", name, type_names[type]),
-                              keys_of(type_names[type]));
-    Material material{.name = node.key, .type = material_types[type].type};
-    const auto color = [&](std::string_view key, Vec3d& value, const Range& range) {
-      if (const JsonNode* found = reader.find(key))
-        value = read_vector(*found, fmt::format("\"{}\"", key), range);
-    };
-    color("kd", material.kd, unit_range);
-    color("ks", material.ks, unit_range);
-    color("reflectance", material.reflectance, unit_range);
-    color("ke", material.ke, not_negative);
-    if (const JsonNode* ior = reader.find("ior")) material.ior = read_number(*ior, "\"ior\"", positive);
-    if (const JsonNode* both = reader.find("two_sided_emission"))
-      material.two_sided_emission = read_boolean(*both, "\"two_sided_emission\"");
-    const JsonNode* alpha = reader.find("alpha");
-    if (alpha) material.alpha = read_number(*alpha, "\"alpha\"", unit_range);
-    if (const JsonNode* roughness = reader.find("roughness")) {
-      if (alpha)
-        throw InputError(roughness->key_place, "give \"roughness\" or \"alpha\" (= roughness^2), not both");
-      const double value = read_number(*roughness, "\"roughness\"", unit_range);
-      material.alpha = value * value;
-    }
-    return material;
+      material_indices_[member.key] = builder_.add_material(read_material(member, file_, builder_));
   }
 
   Transform read_step(const JsonNode& node) {
@@ -235,18 +180,22 @@ class SceneFileReader {
 }  // namespace
 
 const std::vector<SceneSection>& scene_sections() {
-  static const std::vector<SceneSection> sections = {
-      {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "environment"}},
-      {"camera", {"position", "look_at", "up", "fov"}},
-      {"image", {"width", "height"}},
-      {"environment", {"radiance"}},
-      {"diffuse", {"type", "kd", "ke", "two_sided_emission"}},
-      {"microfacet", {"type", "kd", "ks", "roughness", "alpha", "ke", "two_sided_emission"}},
-      {"conductor", {"type", "reflectance", "roughness", "alpha", "ke", "two_sided_emission"}},
-      {"dielectric", {"type", "ior", "roughness", "alpha", "ke", "two_sided_emission"}},
-      {"mesh", {"obj", "material", "transform", "normals"}},
-      {"transform_step", {"scale", "rotate", "translate"}},
-  };
+  static const std::vector<SceneSection> sections = [] {
+    std::vector<SceneSection> all = {
+        {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "environment"}},
+        {"camera", {"position", "look_at", "up", "fov"}},
+        {"image", {"width", "height"}},
+        {"environment", {"radiance"}},
+        {"map", map_keys()},
+        {"mesh", {"obj", "material", "transform", "normals"}},
+        {"transform_step", {"scale", "rotate", "translate"}},
+    };
+    for (const MaterialDescriptor* material : material_descriptors()) {
+      all.push_back({material->name, {"type"}});
+      for (const MaterialKey& key : material->keys) all.back().keys.push_back(key.name);
+    }
+    return all;
+  }();
   return sections;
 }
 

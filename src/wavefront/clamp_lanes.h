@@ -12,7 +12,7 @@ CASTRAY_INLINE bool clamps_indirect(const KernelOptions& options) {
 template <uint32_t features>
 CASTRAY_INLINE Vec reflected(const Scratch& s, int i) {
   const Vec sum = load(s.gathered.sum, i);
-  return (features & feature_materials) ? sum : sum * load(s.camera.albedo, i);
+  return (features & feature_materials) ? sum : sum * load_kd(s.camera.parameters, i);
 }
 
 /// Keeps the radiance so far, and what is gathered so far, as the direct part of each sample.

@@ -18,18 +18,20 @@ struct GlossySuffix {
   Vec normal;
 };
 
+template <uint32_t features>
 CASTRAY_INLINE GlossySuffix glossy_suffix(const KernelScene& scene, const Suffixes& suffixes, int i) {
-  return {gather_bsdf(scene, Uint(suffixes.material[i]), broadcast_entry(suffixes.albedo, i)),
+  return {gather_bsdf(scene, Uint(suffixes.material[i]), broadcast_entry<features>(suffixes.parameters, i)),
           make_frame(broadcast_entry(suffixes.shading_normal, i)), broadcast_entry(suffixes.normal, i)};
 }
 
 /// Adds what a glossy suffix sends to each pixel: `lit` over the density, reflected from its light point;
 /// `arriving` times the stratum, reflected from the next segment, whose direction every x_k could have made
 /// y_j take; `emission`.
+template <uint32_t features>
 CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixes, int suffix,
                                const Gatherers& tile, const Transfer& t, const Vec& lit, const Vec& arriving,
                                const Vec& emission, Gathered& gathered) {
-  const GlossySuffix y = glossy_suffix(scene, suffixes, suffix);
+  const GlossySuffix y = glossy_suffix<features>(scene, suffixes, suffix);
   const Vec p = broadcast_entry(suffixes.p, suffix);
   const Vec to_light = to_local(y.frame, broadcast_entry(suffixes.to_light, suffix));
   const Vec onward = to_local(y.frame, broadcast_entry(suffixes.onward, suffix));
@@ -86,8 +88,8 @@ CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const TileBox
       const Vec emission = emitted * Float(1.f / (density + suffixes.light_density[suffix]));
       if constexpr (features & feature_materials) {
         if (glossy) {
-          add_glossy(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),
-                     reflected * Float(stratum), emission, gathered);
+          add_glossy<features>(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),
+                               reflected * Float(stratum), emission, gathered);
           continue;
         }
       }

@@ -6,6 +6,7 @@
 namespace castray::CASTRAY_ISA {
 
 /// Takes the vertices with a glossy lobe out of `y` into `out`.
+template <uint32_t features>
 CASTRAY_INLINE void split_glossy(const KernelScene& scene, Vertices& y, Vertices& out) {
   int kept = 0;
   out.count = 0;
@@ -13,8 +14,8 @@ CASTRAY_INLINE void split_glossy(const KernelScene& scene, Vertices& y, Vertices
     const Mask active = first_lanes(y.count - i);
     const Uint record = select(active, load(y.material + i) & 0x7fffffffu, Uint(0u));
     const Mask glossy = active & has_traits(scene, record, trait_directional | trait_shareable);
-    compress_vertices(out, out.count, glossy, y, i);
-    compress_vertices(y, kept, active & ~glossy, y, i);
+    compress_vertices<features>(out, out.count, glossy, y, i);
+    compress_vertices<features>(y, kept, active & ~glossy, y, i);
     out.count += count(glossy);
     kept += count(active & ~glossy);
   }
@@ -65,7 +66,7 @@ CASTRAY_INLINE void scatter_glossy(const Context& c, const Vertices& y, Suffixes
     const Sequence sequence = sequence_of(y.names, i);
     const Numbers<4> n = draw<4>(c.options.sobol, sequence, direction_block(1));
     const Numbers<2> choice = draw<2>(c.options.sobol, sequence, choice_block(1));
-    const Shading shading = shading_of(c.scene, y, i);
+    const Shading shading = shading_of<features>(c.scene, y, i);
     const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
     const Vec wi = to_world(shading.frame, s.wi);
     const Mask going =

@@ -182,6 +182,18 @@ struct TileResult {
 using RenderTiles = void (*)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
                              TileResult&);
 
+/// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density
+/// of wi, and the sample for the numbers u (lobe, then direction).
+struct BsdfBatch {
+  uint32_t material;  ///< its index
+  bool front;         ///< seen from the side that its normal points to
+  uint32_t count;
+  const float *wo[3], *wi[3], *u[3];
+  float *f_cos[3], *pdf;
+  float *sampled_wi[3], *weight[3], *sampled_pdf, *eta2;
+  float* specular;  ///< 1: the sample is of a perfectly smooth lobe
+};
+
 /// The functions of one instruction set.
 struct KernelApi {
   const char* name;  ///< "scalar", "sse4", "avx2", "avx512"
@@ -198,6 +210,8 @@ struct KernelApi {
   /// < t < 1.
   void (*facets_closest)(const FacetList&, float slack, const RayBatch&);
   void (*facets_occluded)(const FacetList&, float slack, const ShadowBatch&);
+  /// The lane models of the materials of a scene whose materials and albedos are set, images left out.
+  void (*evaluate_bsdfs)(const KernelScene&, const BsdfBatch&);
 };
 
 namespace scalar {

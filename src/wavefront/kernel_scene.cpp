@@ -4,9 +4,6 @@
 #include <cmath>
 
 #include "lights/covered_lights.h"
-#include "materials/ggx.h"
-#include "materials/lobe_albedo.h"
-#include "materials/texture.h"
 
 namespace castray {
 
@@ -15,45 +12,6 @@ namespace {
 template <class T>
 void put(float (&out)[3], const Vec3<T>& v) {
   for (int c = 0; c < 3; ++c) out[c] = static_cast<float>(v[c]);
-}
-
-KernelAlbedo kernel_albedo(const LobeAlbedo& albedo) {
-  static_assert(LobeAlbedo::intervals == albedo_intervals);
-  KernelAlbedo k{};
-  for (std::size_t i = 0; i <= albedo_intervals; ++i) {
-    k.a[i] = static_cast<float>(albedo.nodes()[i].a);
-    k.b[i] = static_cast<float>(albedo.nodes()[i].b);
-  }
-  return k;
-}
-
-std::uint32_t traits_of(const Material& m) {
-  const bool smooth = Ggx<double>{m.alpha}.smooth() || (m.type == MaterialType::dielectric && m.ior == 1);
-  std::uint32_t traits = 0;
-  if (m.type != MaterialType::diffuse) traits |= trait_directional | (smooth ? trait_specular : 0u);
-  if (m.type == MaterialType::dielectric) traits |= trait_transmits;
-  if (!(traits & (trait_specular | trait_transmits))) traits |= trait_shareable;
-  if (m.emits()) traits |= trait_emits | (m.two_sided_emission ? trait_emits_behind : 0u);
-  return traits;
-}
-
-KernelMaterial kernel_material(const Material& m, std::vector<KernelAlbedo>& albedos) {
-  KernelMaterial k{};
-  Vec3d kd = m.kd;
-  if (m.type == MaterialType::microfacet) {
-    const LobeAlbedo albedo(m.alpha);
-    kd = m.kd / (Vec3d(1) - albedo.mean(m.ks));
-    k.albedo = static_cast<std::uint32_t>(albedos.size() * albedo_floats);
-    albedos.push_back(kernel_albedo(albedo));
-  }
-  put(k.kd, kd);
-  put(k.ks, m.type == MaterialType::conductor ? m.reflectance : m.ks);
-  put(k.emission, m.ke);
-  k.traits = traits_of(m);
-  k.alpha = (k.traits & trait_specular) ? 0.f : static_cast<float>(m.alpha);
-  k.ior = static_cast<float>(m.ior);
-  k.kind = static_cast<std::uint32_t>(m.type);
-  return k;
 }
 
 KernelLight facet_light(const Facet& f, const Material& material) {
@@ -177,34 +135,6 @@ TriangleTable triangle_table(const Scene& scene, const std::vector<std::uint32_t
   return table;
 }
 
-/// The texture's bytes, or null. Kernels read words of four: what has fewer gets room for that.
-const std::uint8_t* bytes_of(const Texture& texture, std::deque<std::array<std::uint8_t, 8>>& small_images) {
-  if (texture.bytes.empty()) return nullptr;
-  if (texture.bytes.size() >= 4) return texture.bytes.data();
-  std::ranges::copy(texture.bytes, small_images.emplace_back().begin());
-  return small_images.back().data();
-}
-
-KernelMap kernel_map(const TextureMap& map, const Texture& texture,
-                     std::deque<std::array<std::uint8_t, 8>>& small_images) {
-  KernelMap k{};
-  k.texture = {bytes_of(texture, small_images),
-               texture.floats.data(),
-               byte_values(texture.color_space).data(),
-               texture.width,
-               texture.height,
-               texture.channels};
-  k.slot = slot_kd;
-  k.count = 3;
-  k.clamp = map.clamp;
-  k.channel = map.channel;
-  std::ranges::copy(map.scale, k.scale);
-  std::ranges::copy(map.offset, k.offset);
-  k.base = map.base;
-  k.gain = map.gain;
-  return k;
-}
-
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {
   std::vector<std::uint32_t> words((scene.triangle_material.size() + 1) / 2);
   for (std::size_t i = 0; i < scene.triangle_material.size(); ++i)
@@ -214,9 +144,8 @@ std::vector<std::uint32_t> pack_materials(const Scene& scene) {
 
 }  // namespace
 
-KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads) {
-  for (const Material& m : scene.materials) materials.push_back(kernel_material(m, albedos));
-  add_details(scene);
+KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads)
+    : materials(scene) {
   if (plan.list) {
     facets = make_facets(scene);
     lights = shapes_of_lights(facets.facets, scene);
@@ -235,40 +164,20 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.triangles = triangle_table(scene, material_words);
   }
   add_lights(scene, plan, threads);
-  view.materials = materials.data();
-  view.albedos = albedos.data();
-  view.details = details.data();
+  view.materials = materials.materials.data();
+  view.albedos = materials.albedos.data();
+  view.details = materials.details.data();
   view.camera = make_kernel_camera(scene.camera, width, height);
   put(view.environment, scene.environment);
   view.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
 }
 
-void KernelSceneData::add_details(const Scene& scene) {
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    const Material& m = scene.materials[i];
-    std::vector<KernelMap> found;
-    if (const TextureMap& map = m.map(SurfaceParameter::kd); map.used())
-      found.push_back(kernel_map(map, scene.textures[static_cast<std::size_t>(map.texture)], small_images));
-    if (m.vertex_colors) {
-      KernelMap colors{};
-      colors.slot = slot_kd;
-      colors.count = 3;
-      colors.is_colors = 1;
-      found.push_back(colors);
-    }
-    if (found.empty()) continue;
-    maps.push_back(std::move(found));
-    details.push_back({maps.back().data(), static_cast<std::uint32_t>(maps.back().size())});
-    materials[i].detail = static_cast<std::uint32_t>(details.size());
-  }
-}
-
 void KernelSceneData::add_lights(const Scene& scene, const Plan& plan, int threads) {
   const double power = finish_lights(lights);
-  for (std::size_t i = 0; i < materials.size(); ++i) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& m = scene.materials[i];
     if (m.emits())
-      materials[i].light_density =
+      materials.materials[i].light_density =
           static_cast<float>(luminance(m.ke) * (m.two_sided_emission ? 2 : 1) / power);
   }
   LightList& list = view.lights;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -10,6 +8,7 @@
 #include "geometry/facets.h"
 #include "geometry/wide_bvh.h"
 #include "lights/light_tree.h"
+#include "materials/kernel_materials.h"
 #include "render/plan.h"
 #include "wavefront/kernel_api.h"
 
@@ -25,17 +24,12 @@ struct KernelSceneData {
   std::optional<FacetsInDouble> edges;        ///< of a list
   std::optional<WideBvh> bvh;                 ///< of a tree
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
-  std::vector<KernelMaterial> materials;
-  std::vector<KernelAlbedo> albedos;
-  std::vector<std::vector<KernelMap>> maps;  ///< of each of `details`
-  std::vector<KernelDetail> details;
-  std::deque<std::array<std::uint8_t, 8>> small_images;  ///< of fewer than four bytes
+  KernelMaterials materials;
   std::vector<KernelLight> lights;
   LightTree light_tree;  ///< where lights are chosen by importance
   KernelScene view{};
 
  private:
-  void add_details(const Scene& scene);
   void add_lights(const Scene& scene, const Plan& plan, int threads);
 };
 

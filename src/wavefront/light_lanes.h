@@ -35,7 +35,7 @@ CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t v
     Vec p = load(vertices.p, i), normal = load(vertices.normal, i), f_cos;
     Float pdf(0.f);
     if constexpr (features & feature_materials) {
-      const Shading shading = shading_of(c.scene, vertices, i);
+      const Shading shading = shading_of<features>(c.scene, vertices, i);
       const Vec local = to_local(shading.frame, wi);
       const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
       f_cos = select(shading.consistent(wi, local), value.f_cos, black());
@@ -44,7 +44,7 @@ CASTRAY_INLINE void light(const Context& c, const Vertices& vertices, uint32_t v
       normal = normal_towards(vertices, i, wi);
     } else {
       pdf = max(dot(normal, wi), Float(0.f)) * Float(1.f / pi);
-      f_cos = load(vertices.albedo, i) * pdf;
+      f_cos = load_kd(vertices.parameters, i) * pdf;
     }
     const Float share = c.options.mis
                             ? point.density / max(point.density + pdf * segment.solid_angle, Float(0x1p-100f))

@@ -31,7 +31,7 @@ CASTRAY_INLINE void scatter(const Context& c, const Vertices& vertices, uint32_t
     if (roulette || (features & feature_materials))
       choice = draw<2>(c.options.sobol, sequence, choice_block(vertex));
     if constexpr (features & feature_materials) {
-      const Shading shading = shading_of(c.scene, vertices, i);
+      const Shading shading = shading_of<features>(c.scene, vertices, i);
       const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
       wi = to_world(shading.frame, s.wi);
       throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
@@ -42,7 +42,7 @@ CASTRAY_INLINE void scatter(const Context& c, const Vertices& vertices, uint32_t
     } else {
       const Vec local = cosine_hemisphere(n.u[0], n.u[1]);
       wi = to_world(make_frame(load(vertices.normal, i)), local);
-      throughput = throughput * load(vertices.albedo, i);
+      throughput = throughput * load_kd(vertices.parameters, i);
       if (c.options.mis) arrival = local.z * Float(1.f / pi);
       brightest = max_component(throughput);
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "materials/bsdf_lanes.h"
+#include "materials/gather_bsdf_lanes.h"
 #include "wavefront/wave_lanes.h"
 
 namespace castray::CASTRAY_ISA {
@@ -24,24 +24,11 @@ struct Shading {
   }
 };
 
-CASTRAY_INLINE Bsdf gather_bsdf(const KernelScene& scene, Uint material, Vec kd) {
-  const KernelMaterial& first = *scene.materials;
-  const Uint record = material & 0x7fffffffu;
-  const Mask front = (material >> 31) == Uint(1u);
-  const Float ior = gather(&first.ior, record);
-  return {gather(&first.kind, record),
-          kd,
-          gather_vec(first.ks, record),
-          gather(&first.alpha, record),
-          select(front, ior, Float(1.f) / ior),
-          gather(&first.albedo, record),
-          scene.albedos};
-}
-
+template <uint32_t features>
 CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, int i) {
   const Frame frame = make_frame(load(v.shading_normal, i));
-  return {gather_bsdf(scene, load(v.material + i), load(v.albedo, i)), frame, to_local(frame, load(v.wo, i)),
-          load(v.normal, i)};
+  return {gather_bsdf(scene, load(v.material + i), load<features>(v.parameters, i)), frame,
+          to_local(frame, load(v.wo, i)), load(v.normal, i)};
 }
 
 /// The normal on wi's side.

@@ -18,6 +18,7 @@
 namespace castray::CASTRAY_ISA {
 
 /// Takes the vertices that cannot share, whose materials are not shareable, out of `camera` into `out`.
+template <uint32_t features>
 CASTRAY_INLINE void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out) {
   out.count = 0;
   for (int i = 0; i < camera.count; i += width) {
@@ -26,10 +27,10 @@ CASTRAY_INLINE void split_unshareable(const KernelScene& scene, Vertices& camera
     const Mask alone = first_lanes(camera.count - i) & (length_squared(normal) > Float(0.f)) &
                        ~has_traits(scene, record, trait_shareable);
     if (none(alone)) continue;
-    compress_vertices(out, out.count, alone, camera, i);
+    compress_vertices<features>(out, out.count, alone, camera, i);
     out.count += count(alone);
     store(camera.normal, i, select(alone, black(), normal));
-    store(camera.albedo, i, select(alone, black(), load(camera.albedo, i)));
+    store_kd(camera.parameters, i, select(alone, black(), load_kd(camera.parameters, i)));
   }
 }
 
@@ -51,7 +52,7 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
   const int n = c.job.tiles * tile_pixels;
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   if constexpr (features & feature_materials) {
-    split_unshareable(c.scene, s.camera, s.vertices);
+    split_unshareable<features>(c.scene, s.camera, s.vertices);
     if (s.vertices.count > 0) follow<features>(c, s, s.vertices, 0, first_roulette);
   }
   for (int tile = 0; tile < c.job.tiles; ++tile)
@@ -62,7 +63,7 @@ CASTRAY_INLINE void share(Context& c, Scratch& s) {
   closest<features>(c, s.paths, s.ends, false, s.hits);
   surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
   keep_suffixes<features>(c, s.vertices, s.suffixes);
-  if constexpr (features & feature_materials) split_glossy(c.scene, s.vertices, s.glossy);
+  if constexpr (features & feature_materials) split_glossy<features>(c.scene, s.vertices, s.glossy);
   follow<features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
   if constexpr (features & feature_materials) follow_glossy<features>(c, s);
   gather_suffixes<features>(c, s.camera, s.boxes, s.ends, s.suffixes, s.radiance, s.visibility, s.gathered);

@@ -15,7 +15,8 @@ struct Suffixes {
   VecArray<batch_size> weight;                  ///< f cos / pdf there, times the stratum
   // Of glossy y, which reflect to each pixel what it gets by itself:
   alignas(64) uint32_t glossy[batch_size];
-  VecArray<batch_size> shading_normal, albedo;
+  VecArray<batch_size> shading_normal;
+  ParameterArray<batch_size> parameters;
   alignas(64) uint32_t material[batch_size];
   VecArray<batch_size> to_light, onward;  ///< directions: to the light point, and of the next segment
 };
@@ -43,11 +44,12 @@ CASTRAY_INLINE void start_suffixes(const Context& c, const Vertices& x, Suffixes
           Uint((uint32_t)(tile * tile_pixels)) + select(there, (item << shift) + in_stratum, Uint(0u));
       const Uint index = tile_index(key, c.job.sample, item, per_tile);
       const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, direction_block(0));
-      const Vec normal = gather_entries(x.normal, entry), albedo = gather_entries(x.albedo, entry);
-      Vec wi, weight = albedo;
+      const Vec normal = gather_entries(x.normal, entry);
+      const Parameters<features> parameters = gather_entries<features>(x.parameters, entry);
+      Vec wi, weight = parameters.kd();
       if constexpr (features & feature_materials) {
         const Frame frame = make_frame(gather_entries(x.shading_normal, entry));
-        const Shading shading{gather_bsdf(c.scene, gather(x.material, entry), albedo), frame,
+        const Shading shading{gather_bsdf(c.scene, gather(x.material, entry), parameters), frame,
                               to_local(frame, gather_entries(x.wo, entry)), normal};
         const Numbers<2> choice = draw<2>(c.options.sobol, {Uint(key), index}, choice_block(0));
         const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
@@ -99,13 +101,17 @@ CASTRAY_INLINE void keep_suffixes(const Context& c, Vertices& y, Suffixes& suffi
     const KernelMaterial& material = material_of(c.scene, y.material[k]);
     const bool both_sides = material.traits & trait_emits_behind;
     const bool shines = c.options.mis && (both_sides || y.material[k] >> 31);
-    const float* e = material.emission;
     suffixes.landed[suffix] = 1;
     copy_entry(suffixes.p, suffix, y.p.x, y.p.y, y.p.z, k);
     copy_entry(suffixes.normal, suffix, y.normal.x, y.normal.y, y.normal.z, k);
-    suffixes.emission.x[suffix] = shines ? e[0] : 0.f;
-    suffixes.emission.y[suffix] = shines ? e[1] : 0.f;
-    suffixes.emission.z[suffix] = shines ? e[2] : 0.f;
+    const auto emission = [&](int c) {
+      if (!shines) return 0.f;
+      return (features & feature_detail) ? y.parameters.value[slot_emission + c][k]
+                                         : material.value[slot_emission + c];
+    };
+    suffixes.emission.x[suffix] = emission(0);
+    suffixes.emission.y[suffix] = emission(1);
+    suffixes.emission.z[suffix] = emission(2);
     suffixes.light_density[suffix] =
         material.light_density * (float)c.options.light_points / (both_sides ? 2.f : 1.f);
     suffixes.glossy[suffix] = 0;
@@ -115,7 +121,7 @@ CASTRAY_INLINE void keep_suffixes(const Context& c, Vertices& y, Suffixes& suffi
       suffixes.material[suffix] = y.material[k];
       copy_entry(suffixes.shading_normal, suffix, y.shading_normal.x, y.shading_normal.y, y.shading_normal.z,
                  k);
-      copy_entry(suffixes.albedo, suffix, y.albedo.x, y.albedo.y, y.albedo.z, k);
+      copy_entry<features>(suffixes.parameters, suffix, y.parameters, k);
     } else {
       y.names.slot[k] = suffixes.origin[suffix];
       copy_entry(y.throughput, (uint32_t)k, suffixes.weight.x, suffixes.weight.y, suffixes.weight.z,

@@ -1,23 +1,29 @@
 #pragma once
 
 #include "geometry/hit_point_lanes.h"
-#include "materials/bsdf_lanes.h"
-#include "materials/texture_lanes.h"
+#include "materials/surface_values_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/radiance_lanes.h"
 #include "wavefront/shading_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
+/// What the side that shines emits.
+template <uint32_t features>
+CASTRAY_INLINE Vec emission_of(const KernelScene& scene, Uint record, const Parameters<features>& p) {
+  if constexpr (features & feature_detail) return p.vec(slot_emission);
+  return gather_vec(scene.materials->value + slot_emission, record);
+}
+
 /// The part of a surface's own light that a ray counts (balance heuristic with light sampling).
-CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, Mask front, Float arrival,
-                                  Float distance, Float cosine) {
+CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, Vec emission, Mask front,
+                                  Float arrival, Float distance, Float cosine) {
   const KernelMaterial& first = *scene.materials;
   const Mask shines = front | has_traits(scene, material, trait_emits_behind);
   const Float light_pdf = gather(&first.light_density, material) * distance * distance / abs(cosine);
   const Float share =
       select(arrival >= Float(counts_all), Float(1.f), arrival / max(arrival + light_pdf, Float(0x1p-100f)));
-  return select(shines, gather_vec(first.emission, material) * share, black());
+  return select(shines, emission * share, black());
 }
 
 /// The surface at each hit. Paths that miss collect the environment and end. `see_emission`: some rays count
@@ -37,10 +43,13 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
     const Float towards = dot(x.normal, d);
     const Mask front = towards < Float(0.f);
     const Vec facing = select(front, x.normal, -x.normal);
-    Vec albedo = gather_vec(scene.materials->kd, x.material);
+    Parameters<features> parameters = gather_parameters<features>(scene, x.material);
+    if constexpr (features & feature_detail)
+      resolve_values(scene, x.material, {primitive, load(hits.b1 + i), load(hits.b2 + i)}, parameters.value);
     if (see_emission) {
       const Float arrival = load(paths.arrival + i);
-      const Vec emission = found_emission(scene, x.material, front, arrival, load(hits.t + i), towards);
+      const Vec emission = found_emission(scene, x.material, emission_of(scene, x.material, parameters),
+                                          front, arrival, load(hits.t + i), towards);
       radiance.add(paths.names.slot + i, hit & (arrival > Float(0.f)), throughput * emission);
     }
     radiance.add(paths.names.slot + i, active & ~hit, throughput * broadcast(scene.environment));
@@ -52,9 +61,6 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
       if constexpr (features & feature_detail) {
         const Float b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
         shading_normal = smooth_normal(scene.triangles, primitive, b1, b2, facing, to_viewer);
-        Float value[parameter_floats] = {albedo.x, albedo.y, albedo.z};
-        apply_maps(scene, x.material, {primitive, b1, b2}, value);
-        albedo = {value[slot_kd], value[slot_kd + 1], value[slot_kd + 2]};
       }
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);
@@ -64,7 +70,9 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
     const auto or_black = [&](Vec v) { return keep_misses ? select(hit, v, black()) : v; };
     compress_store(out.p, n, kept, or_black(fma(facing, x.error, x.p)));
     compress_store(out.normal, n, kept, or_black(facing));
-    compress_store(out.albedo, n, kept, or_black(albedo));
+    if constexpr (keep_misses)
+      for (Float& v : parameters.value) v = select(hit, v, Float(0.f));
+    compress_store(out.parameters, n, kept, parameters);
     compress_store(out.throughput, n, kept, or_black(throughput));
     compress_store(out.material + n, kept, x.material | select(front, Uint(0x80000000u), Uint(0u)));
     compress_names(out.names, n, kept, paths.names, i);

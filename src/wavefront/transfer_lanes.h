@@ -33,14 +33,14 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
     const Float cos_y = max(dot(y.normal, d), Float(0.f)), cos_x = max(-dot(normal, d), Float(0.f));
     t.density[i] = cos_x * cos_y / (distance2 * distance2) * Float(1.f / pi);
     if constexpr (features & feature_materials) {
-      t.weight[i] = load(tile.x.albedo, entry) * t.density[i];
+      t.weight[i] = load_kd(tile.x.parameters, entry) * t.density[i];
       const Mask directional =
           has_traits(c.scene, load(tile.x.material + entry) & 0x7fffffffu, trait_directional) &
           (length_squared(normal) > Float(0.f));
       bool other = any(directional);
       if constexpr (features & feature_detail) other = true;
       if (!other) continue;
-      const Shading shading = shading_of(c.scene, tile.x, entry);
+      const Shading shading = shading_of<features>(c.scene, tile.x, entry);
       const Float inverse = Float(1.f) / sqrt(distance2);
       const Vec wi = d * -inverse, local = to_local(shading.frame, wi);
       const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);

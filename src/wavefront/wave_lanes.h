@@ -1,5 +1,6 @@
 #pragma once
 
+#include "materials/parameters_lanes.h"
 #include "simd/random_lanes.h"
 #include "simd/vec_lanes.h"
 #include "wavefront/kernel_api.h"
@@ -59,7 +60,8 @@ struct Hits {
 /// arriving ray; `p` is already moved to that side by `error`, the bound of its distance from the surface.
 struct Vertices {
   int count = 0;
-  VecArray<capacity> p, normal, albedo, throughput;
+  VecArray<capacity> p, normal, throughput;
+  ParameterArray<capacity> parameters;
   alignas(64) UintArray material;  ///< offset of its record, in floats; the top bit: seen from the front
   PathNames names;
   // Only where there are other materials than diffuse ones:
@@ -68,10 +70,11 @@ struct Vertices {
 };
 
 /// Copies the vertices i to i + width - 1 of `from`, those of `m`, to the entries of `to` from n on.
+template <uint32_t features>
 CASTRAY_INLINE void compress_vertices(Vertices& to, int n, Mask m, const Vertices& from, int i) {
   compress_store(to.p, n, m, load(from.p, i));
   compress_store(to.normal, n, m, load(from.normal, i));
-  compress_store(to.albedo, n, m, load(from.albedo, i));
+  compress_store(to.parameters, n, m, load<features>(from.parameters, i));
   compress_store(to.throughput, n, m, load(from.throughput, i));
   compress_store(to.material + n, m, load(from.material + i));
   compress_names(to.names, n, m, from.names, i);

@@ -6,13 +6,84 @@
 #include <string>
 
 #include "cli/render_flags.h"
+#include "materials/descriptor.h"
 #include "scene/scene_file.h"
 
 using namespace castray;
 
+namespace {
+
+using Json = nlohmann::json;
+
+Json schema() {
+  return Json::parse(std::ifstream(std::string(CASTRAY_ROOT) + "/scenes/castray.schema.json"));
+}
+
+Json reference(const std::string& name) { return {{"$ref", "#/definitions/" + name}}; }
+
+Json constant_schema(const MaterialKey& key) {
+  if (key.kind == MaterialKey::Kind::image_only) return reference("map");
+  if (key.kind == MaterialKey::Kind::flag) return {{"type", "boolean"}};
+  const Range& r = key.range;
+  const bool bounded = r.greatest < std::numeric_limits<double>::max();
+  if (key.kind == MaterialKey::Kind::color) return reference(bounded ? "reflectance" : "radiance");
+  Json number{{"type", "number"}, {r.above_least ? "exclusiveMinimum" : "minimum", r.least}};
+  if (bounded) number["maximum"] = r.greatest;
+  return number;
+}
+
+/// The schema of a material, by its descriptor.
+Json material_schema(const MaterialDescriptor& material) {
+  Json properties{{"type", {{"const", material.name}}}};
+  for (const MaterialKey& key : material.keys) {
+    Json property = constant_schema(key);
+    if (key.parameter && key.kind != MaterialKey::Kind::image_only)
+      property = {{"anyOf", {property, reference("map")}}};
+    property["description"] = key.text;
+    properties[std::string(key.name)] = property;
+  }
+  return {{"description", material.text},
+          {"type", "object"},
+          {"additionalProperties", false},
+          {"required", {"type"}},
+          {"properties", properties}};
+}
+
+}  // namespace
+
+TEST_CASE("the JSON Schema describes materials as their descriptors do") {
+  const Json definitions = schema()["definitions"];
+  Json choices = Json::array();
+  for (const MaterialDescriptor* material : material_descriptors()) {
+    const std::string name(material->name);
+    const Json expected = material_schema(*material);
+    INFO(name << " should be " << expected.dump(2));
+    CHECK(definitions[name] == expected);
+    choices.push_back(reference(name));
+  }
+  CHECK(schema()["properties"]["materials"]["additionalProperties"]["oneOf"] == choices);
+}
+
+TEST_CASE("docs/materials.md has a row for each material and each of its keys") {
+  std::ifstream file(std::string(CASTRAY_ROOT) + "/docs/materials.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  for (const MaterialDescriptor* material : material_descriptors()) {
+    std::string row = "| `" + std::string(material->name) + "` | ";
+    const std::size_t common = with_common_keys({}).size();
+    for (std::size_t i = 0; i + common < material->keys.size(); ++i)
+      row += (i ? ", `" : "`") + std::string(material->keys[i].name) + "`";
+    row += " | " + std::string(material->formula) + " |";
+    INFO(row);
+    CHECK(text.find(row) != std::string::npos);
+  }
+  for (const MaterialKey& key : with_common_keys({})) {
+    INFO(key.name);
+    CHECK(text.find("`" + std::string(key.name) + "`") != std::string::npos);
+  }
+}
+
 TEST_CASE("the JSON Schema has the keys that the parser knows, section by section") {
-  const auto schema =
-      nlohmann::json::parse(std::ifstream(std::string(CASTRAY_ROOT) + "/scenes/castray.schema.json"));
+  const Json schema = ::schema();
   std::set<std::string> sections;
   for (const SceneSection& section : scene_sections()) {
     const std::string name(section.name);

@@ -1,0 +1,110 @@
+#include "materials/descriptor.h"
+
+#include <algorithm>
+
+#include "materials/ggx.h"
+#include "materials/material_list.h"
+
+namespace castray {
+
+namespace {
+
+template <class... Models>
+std::vector<const MaterialDescriptor*> descriptors_of(const std::variant<Models...>*) {
+  return {&Models::descriptor()...};
+}
+
+}  // namespace
+
+const std::vector<const MaterialDescriptor*>& material_descriptors() {
+  static const auto all = [] {
+    auto list = descriptors_of(static_cast<const AnyBsdf<double>*>(nullptr));
+    std::ranges::sort(list, {}, &MaterialDescriptor::type);
+    return list;
+  }();
+  return all;
+}
+
+const MaterialDescriptor& descriptor_of(MaterialType type) {
+  return *material_descriptors()[static_cast<std::size_t>(type)];
+}
+
+std::vector<MaterialKey> with_common_keys(std::vector<MaterialKey> keys) {
+  using Kind = MaterialKey::Kind;
+  keys.insert(
+      keys.end(),
+      {{.name = "coverage",
+        .kind = Kind::number,
+        .field = &Material::coverage,
+        .range = unit_range,
+        .parameter = SurfaceParameter::coverage,
+        .slot = slot_coverage,
+        .text = "The share of the surface that is there [1]."},
+       {.name = "ke",
+        .kind = Kind::color,
+        .field = &Material::ke,
+        .range = not_negative,
+        .parameter = SurfaceParameter::ke,
+        .slot = slot_emission,
+        .text = "Emitted radiance, on the side that triangles turn counter-clockwise on [0, 0, 0]."},
+       {.name = "two_sided_emission",
+        .kind = Kind::flag,
+        .field = &Material::two_sided_emission,
+        .text = "Emit on both sides [false]."},
+       {.name = "normal_map",
+        .kind = Kind::image_only,
+        .parameter = SurfaceParameter::normal,
+        .text = "Shading normals in the frame of the texture coordinates; gain is their strength."},
+       {.name = "bump_map",
+        .kind = Kind::image_only,
+        .parameter = SurfaceParameter::bump,
+        .text =
+            "Heights that bend shading normals; gain is the height of the value 1, in the scene's units."}});
+  return keys;
+}
+
+MaterialKey vertex_colors_key() {
+  return {.name = "vertex_colors",
+          .kind = MaterialKey::Kind::flag,
+          .field = &Material::vertex_colors,
+          .text = "The colours of the mesh's vertices multiply kd [false]."};
+}
+
+MaterialKey alpha_key() {
+  return {.name = "alpha",
+          .kind = MaterialKey::Kind::number,
+          .field = &Material::alpha,
+          .range = unit_range,
+          .parameter = SurfaceParameter::alpha,
+          .slot = slot_alpha,
+          .text = "Width of the GGX distribution; 0 is smooth [0].",
+          .brief = true};
+}
+
+MaterialKey roughness_key() {
+  return {.name = "roughness",
+          .kind = MaterialKey::Kind::squared,
+          .field = &Material::alpha,
+          .range = unit_range,
+          .parameter = SurfaceParameter::roughness,
+          .slot = slot_alpha,
+          .text = "The square root of alpha."};
+}
+
+bool has_smooth_lobe(const Material& m) { return Ggx<double>{m.alpha}.smooth() && !m.has_alpha_map(); }
+
+std::uint32_t traits_of(const Material& material) {
+  std::uint32_t traits = descriptor_of(material.type).traits(material);
+  if (!(traits & (trait_specular | trait_transmits))) traits |= trait_shareable;
+  if (material.emits()) traits |= trait_emits | (material.two_sided_emission ? trait_emits_behind : 0u);
+  return traits;
+}
+
+Vec3d value_of(const MaterialKey& key, const Material& material) {
+  if (const auto* color = std::get_if<Vec3d Material::*>(&key.field)) return material.*(*color);
+  if (const auto* number = std::get_if<double Material::*>(&key.field)) return Vec3d(material.*(*number));
+  if (const auto* flag = std::get_if<bool Material::*>(&key.field)) return Vec3d(material.*(*flag) ? 1 : 0);
+  return {};
+}
+
+}  // namespace castray

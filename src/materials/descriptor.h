@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "castray/material.h"
+#include "core/range.h"
+#include "materials/kernel_material.h"
+
+namespace castray {
+
+/// One key of a material in a scene file: the field that it sets, and what else is to be known of it.
+struct MaterialKey {
+  /// `squared`: the field is the square of what is written. `image_only`: there is no constant.
+  enum class Kind : unsigned char { color, number, squared, flag, image_only };
+
+  std::string_view name;
+  Kind kind;
+  std::variant<std::monostate, Vec3d Material::*, double Material::*, bool Material::*> field{};
+  Range range{};
+  std::optional<SurfaceParameter> parameter{};  ///< that an image can change
+  std::optional<ParameterSlot> slot{};          ///< of the kernels' values
+  std::string_view text{};                      ///< for the schema, with the default in brackets
+  bool brief = false;                           ///< told by `castray info` even where it is the default
+};
+
+class LobeAlbedo;
+
+/// All that is to be known of a material besides its reflection: what files, `info`, hashes, plans and
+/// kernels need, in one place.
+struct MaterialDescriptor {
+  MaterialType type;
+  std::string_view name;     ///< in scene files
+  std::string_view text;     ///< one sentence, for the schema
+  std::string_view formula;  ///< f, for docs/materials.md
+  std::vector<MaterialKey> keys;
+  std::uint32_t (*traits)(const Material&);  ///< MaterialTrait set, that of emission left out
+  /// Makes of `values`, by ParameterSlot, those that the kernels' model wants; for a model with a lobe whose
+  /// albedo is tabulated. Null: they are used as they are.
+  void (*finish)(const LobeAlbedo& lobe, double* values) = nullptr;
+};
+
+/// All materials, in the order of MaterialType.
+const std::vector<const MaterialDescriptor*>& material_descriptors();
+const MaterialDescriptor& descriptor_of(MaterialType type);
+
+/// `keys`, and those that every material has.
+std::vector<MaterialKey> with_common_keys(std::vector<MaterialKey> keys);
+
+MaterialKey vertex_colors_key();
+
+/// The keys of the width of a GGX distribution.
+MaterialKey alpha_key();
+MaterialKey roughness_key();
+
+/// All traits of a material.
+std::uint32_t traits_of(const Material& material);
+
+/// Whether GGX lobes of this material are perfectly smooth. An image of alpha or roughness never makes one
+/// so: its alpha is at least Ggx::smooth_below.
+bool has_smooth_lobe(const Material& material);
+
+/// A field's value as up to three numbers.
+Vec3d value_of(const MaterialKey& key, const Material& material);
+
+}  // namespace castray

@@ -1,0 +1,32 @@
+#include "materials/dielectric.h"
+
+namespace castray {
+
+const MaterialDescriptor& dielectric_descriptor() {
+  static const MaterialDescriptor descriptor{
+      .type = MaterialType::dielectric,
+      .name = "dielectric",
+      .text = "Glass: exact Fresnel reflection and refraction, smooth or through GGX facets.",
+      .formula = "reflection and refraction, smooth or through facets (Walter et al. 2007)",
+      .keys = with_common_keys({{.name = "ior",
+                                 .kind = MaterialKey::Kind::number,
+                                 .field = &Material::ior,
+                                 .range = positive,
+                                 .text = "Index of refraction inside over outside [1.5].",
+                                 .brief = true},
+                                {.name = "transmittance",
+                                 .kind = MaterialKey::Kind::color,
+                                 .field = &Material::transmittance,
+                                 .range = unit_range,
+                                 .parameter = SurfaceParameter::transmittance,
+                                 .slot = slot_kd,
+                                 .text = "Tint of what passes through the surface [1, 1, 1]."},
+                                roughness_key(),
+                                alpha_key()}),
+      .traits = [](const Material& m) -> std::uint32_t {
+        return trait_directional | trait_transmits | (has_smooth_lobe(m) || m.ior == 1 ? trait_specular : 0u);
+      }};
+  return descriptor;
+}
+
+}  // namespace castray

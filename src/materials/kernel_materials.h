@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "castray/scene.h"
+#include "materials/descriptor.h"
+
+namespace castray {
+
+/// A scene's materials as the kernels read them. Points into itself and into the scene.
+class KernelMaterials {
+ public:
+  explicit KernelMaterials(const Scene& scene);
+  KernelMaterials(const KernelMaterials&) = delete;
+  KernelMaterials& operator=(const KernelMaterials&) = delete;
+
+  std::vector<KernelMaterial> materials;  ///< light_density is left to who knows the lights
+  std::vector<KernelDetail> details;
+  std::vector<KernelAlbedo> albedos;
+
+ private:
+  void add(const Scene& scene, const Material& m);
+  std::uint32_t albedo_offset(double alpha, const LobeAlbedo& lobe);
+  std::vector<KernelMap> maps_of(const Scene& scene, const Material& m);
+  KernelTexture kernel_texture(const Texture& texture);
+
+  std::map<double, std::uint32_t> albedo_offsets_;        ///< by alpha
+  std::deque<std::vector<KernelMap>> maps_;               ///< of each of `details`
+  std::deque<std::array<std::uint8_t, 8>> small_images_;  ///< of fewer than four bytes
+};
+
+}  // namespace castray

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "materials/bsdf_lanes.h"
+#include "materials/texture_lanes.h"
+
+// The one place where images become values: between a hit and its vertex.
+
+namespace castray::CASTRAY_ISA {
+
+/// What maps read at points of triangles: texture coordinates and the vertices' colours, where there are any.
+struct MapInputs {
+  Float u, v;
+  Vec color;
+  Mask has_uv, has_color;
+};
+
+CASTRAY_INLINE MapInputs map_inputs(const TriangleTable& table, const TrianglePlace& at) {
+  MapInputs in{Float(0.f), Float(0.f), black(), Mask(false), Mask(false)};
+  if (table.uv_corners) {
+    const Corners corners = corners_of(table.uv_corners, at.triangle);
+    in.has_uv = ~(corners.a == Uint(no_corner));
+    in.u = at.interpolate(table.uvs, corners, in.has_uv, 2, 0);
+    in.v = at.interpolate(table.uvs, corners, in.has_uv, 2, 1);
+  }
+  if (table.color_corners) {
+    const Corners corners = corners_of(table.color_corners, at.triangle);
+    in.has_color = ~(corners.a == Uint(no_corner));
+    in.color = {at.interpolate(table.colors, corners, in.has_color, 3, 0),
+                at.interpolate(table.colors, corners, in.has_color, 3, 1),
+                at.interpolate(table.colors, corners, in.has_color, 3, 2)};
+  }
+  return in;
+}
+
+/// Multiplies `value`, by ParameterSlot, by what those maps of a material say whose slots are in `wanted`.
+CASTRAY_INLINE void apply_maps(const KernelDetail& d, uint32_t wanted, const MapInputs& in, Mask here,
+                               Float* value) {
+  for (uint32_t i = 0; i < d.count; ++i) {
+    const KernelMap& map = d.maps[i];
+    const Mask valid = here & (map.is_colors ? in.has_color : in.has_uv);
+    if (!(wanted >> map.slot & 1) || none(valid)) continue;
+    const Vec factor = map.is_colors ? in.color : map_value(map, in.u, in.v);
+    Float* slot = value + map.slot;
+    if (map.count == 3) {
+      slot[0] = select(valid, slot[0] * factor.x, slot[0]);
+      slot[1] = select(valid, slot[1] * factor.y, slot[1]);
+      slot[2] = select(valid, slot[2] * factor.z, slot[2]);
+    } else {
+      const Float once = slot[0] * factor.x, power = map.squared ? once * factor.x : once;
+      slot[0] = select(valid, min(max(power, Float(0.f)), Float(1.f)), slot[0]);
+    }
+  }
+}
+
+/// Calls `work` for each material with details of the lanes in `active`, with the lanes that have it.
+template <class Work>
+CASTRAY_INLINE void for_each_detail(const KernelScene& scene, Uint material, Mask active, Work work) {
+  const Uint details = gather(&scene.materials->detail, material);
+  for (uint32_t left = bits(active & ~(details == Uint(0u))); left;) {
+    const uint32_t detail = lane(details, __builtin_ctz(left));
+    const Mask here = details == Uint(detail);
+    left &= ~bits(here);
+    work(scene.details[detail - 1], here);
+  }
+}
+
+/// Replaces a material's own values, the vertex_floats from `value` on, by those of the points in its lanes.
+inline __attribute__((noinline)) void resolve_values(const KernelScene& scene, const Uint& material,
+                                                     const TrianglePlace& at, Float* value) {
+  if (none(~(gather(&scene.materials->detail, material) == Uint(0u)))) return;
+  const MapInputs in = map_inputs(scene.triangles, at);
+  for_each_detail(scene, material, Mask(true), [&](const KernelDetail& d, Mask here) {
+    Float own[parameter_floats];
+    for (int k = 0; k < parameter_floats; ++k) own[k] = Float(d.value[k]);
+    apply_maps(d, ~0u, in, here, own);
+    own[slot_alpha] = max(own[slot_alpha], Float(d.least_alpha));
+    finish_values(all_models, d, own);
+    for (int k = 0; k < vertex_floats; ++k) value[k] = select(here, own[k], value[k]);
+  });
+}
+
+/// The share of the surface that is there at points.
+CASTRAY_INLINE Float coverage_at(const KernelScene& scene, Uint material, const TrianglePlace& at) {
+  Float coverage = gather(&scene.materials->coverage, material);
+  const MapInputs in = map_inputs(scene.triangles, at);
+  for_each_detail(scene, material, Mask(true), [&](const KernelDetail& d, Mask here) {
+    Float own[parameter_floats];
+    own[slot_coverage] = Float(d.value[slot_coverage]);
+    apply_maps(d, 1u << slot_coverage, in, here, own);
+    coverage = select(here, own[slot_coverage], coverage);
+  });
+  return coverage;
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,135 @@
+#include "scene/material_reader.h"
+
+#include <fmt/core.h>
+
+#include "core/nearest.h"
+#include "core/text.h"
+#include "materials/descriptor.h"
+#include "scene/mtl_file.h"
+
+namespace castray {
+
+namespace {
+
+using Kind = MaterialKey::Kind;
+
+std::string quoted(std::string_view key) { return fmt::format("\"{}\"", key); }
+
+std::array<float, 2> read_pair(const JsonNode& node, std::string_view name) {
+  const std::vector<double> numbers = read_numbers(node, name, 2);
+  return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1])};
+}
+
+class MaterialReader {
+ public:
+  MaterialReader(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder)
+      : node_(node), file_(file), builder_(builder) {}
+
+  Material read() {
+    std::vector<std::string_view> all_keys{"type"}, type_names;
+    for (const MaterialDescriptor* known : material_descriptors()) {
+      type_names.push_back(known->name);
+      for (const MaterialKey& key : known->keys) all_keys.push_back(key.name);
+    }
+    const std::string name = fmt::format("material '{}'", printable(node_.key));
+    // First the type, as the keys depend on it.
+    const ObjectReader any(node_, name, all_keys);
+    const MaterialDescriptor& descriptor =
+        *material_descriptors()[choose(any.require("type"), "material type", type_names)];
+    std::vector<std::string_view> keys{"type"};
+    for (const MaterialKey& key : descriptor.keys) keys.push_back(key.name);
+    const ObjectReader reader(node_, fmt::format("{} ({})", name, descriptor.name), keys);
+    material_.name = node_.key;
+    material_.type = descriptor.type;
+    const JsonNode* roughness = reader.find("roughness");
+    if (roughness && reader.find("alpha"))
+      throw InputError(roughness->key_place, "give \"roughness\" or \"alpha\" (= roughness^2), not both");
+    for (const MaterialKey& key : descriptor.keys)
+      if (const JsonNode* found = reader.find(key.name)) read_key(key, *found);
+    return std::move(material_);
+  }
+
+ private:
+  void read_key(const MaterialKey& key, const JsonNode& node) {
+    if (key.kind == Kind::image_only || (key.parameter && node.type == JsonNode::Type::object))
+      read_map(key, node);
+    else
+      read_constant(key, node, quoted(key.name));
+  }
+
+  void read_constant(const MaterialKey& key, const JsonNode& node, const std::string& name) {
+    if (key.kind == Kind::color)
+      material_.*std::get<Vec3d Material::*>(key.field) = read_vector(node, name, key.range);
+    else if (key.kind == Kind::flag)
+      material_.*std::get<bool Material::*>(key.field) = read_boolean(node, name);
+    else
+      set_number(key, read_number(node, name, key.range));
+  }
+
+  void set_number(const MaterialKey& key, double value) {
+    material_.*std::get<double Material::*>(key.field) = key.kind == Kind::squared ? value * value : value;
+  }
+
+  void read_map(const MaterialKey& key, const JsonNode& node) {
+    const ObjectReader reader(node, quoted(key.name), map_keys());
+    TextureMap map;
+    if (const JsonNode* scale = reader.find("scale")) map.scale = read_pair(*scale, "\"scale\"");
+    if (const JsonNode* offset = reader.find("offset")) map.offset = read_pair(*offset, "\"offset\"");
+    if (const JsonNode* clamp = reader.find("clamp")) map.clamp = read_boolean(*clamp, "\"clamp\"");
+    if (const JsonNode* base = reader.find("base"))
+      map.base = static_cast<float>(read_number(*base, "\"base\""));
+    if (const JsonNode* gain = reader.find("gain"))
+      map.gain = static_cast<float>(read_number(*gain, "\"gain\""));
+    if (const JsonNode* channel = reader.find("channel"))
+      map.channel = static_cast<Channel>(
+          choose(*channel, "channel", {"color", "red", "green", "blue", "alpha", "luminance"}));
+    ColorSpace space = key.kind == Kind::color ? ColorSpace::srgb : ColorSpace::linear;
+    if (const JsonNode* named = reader.find("color_space"))
+      space = choose(*named, "colour space", {"srgb", "linear"}) == 0 ? ColorSpace::srgb : ColorSpace::linear;
+    read_factor(key, reader.find("factor"));
+    const JsonNode& image = reader.require("image");
+    const std::filesystem::path path = file_.parent_path() / read_string(image, "\"image\"");
+    if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));
+    map.texture = builder_.add_texture(path, space);
+    material_.map(*key.parameter) = map;
+  }
+
+  /// An image without a factor is taken as it is.
+  void read_factor(const MaterialKey& key, const JsonNode* factor) {
+    if (factor && key.kind == Kind::image_only)
+      throw InputError(factor->key_place, fmt::format("\"{}\" has no factor; use \"gain\"", key.name));
+    if (factor)
+      read_constant(key, *factor, "\"factor\"");
+    else if (key.kind == Kind::color)
+      material_.*std::get<Vec3d Material::*>(key.field) = Vec3d(1);
+    else if (key.kind != Kind::image_only)
+      set_number(key, 1);
+  }
+
+  const JsonNode& node_;
+  const std::filesystem::path& file_;
+  SceneBuilder& builder_;
+  Material material_{.name = {}};
+};
+
+}  // namespace
+
+Material read_material(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder) {
+  return MaterialReader(node, file, builder).read();
+}
+
+const std::vector<std::string_view>& map_keys() {
+  static const std::vector<std::string_view> keys{"image",   "factor",      "scale", "offset", "clamp",
+                                                  "channel", "color_space", "base",  "gain"};
+  return keys;
+}
+
+std::size_t choose(const JsonNode& node, std::string_view name, const std::vector<std::string_view>& names) {
+  const std::string& text = read_string(node, name);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == text) return i;
+  throw InputError(node.place,
+                   fmt::format("unknown {} '{}'{}", name, printable(text), suggestion(text, names)));
+}
+
+}  // namespace castray
