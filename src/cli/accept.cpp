@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "castray/error.h"
@@ -55,15 +54,16 @@ int accept(const fs::path& image, const fs::path& reference) {
 
 }  // namespace
 
-Run add_accept(CLI::App& app) {
+Run add_accept(Arguments& arguments) {
   struct Files {
     fs::path image, reference;
   };
   auto files = std::make_shared<Files>();
-  app.add_option("IMAGE", files->image, "an image or film, or a folder of them")->required();
-  app.add_option("REFERENCE", files->reference,
-                 "the file or folder that it shall replace; made where there is none")
-      ->required();
+  arguments.add_positional("IMAGE", files->image, "an image or film, or a folder of them").required();
+  arguments
+      .add_positional("REFERENCE", files->reference,
+                      "the file or folder that it shall replace; made where there is none")
+      .required();
   return [files] { return accept(files->image, files->reference); };
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <memory>
 
@@ -72,40 +71,38 @@ int bench(const BenchFlags& flags, const std::string& command) {
 
 }  // namespace
 
-Run add_bench(CLI::App& app) {
+Run add_bench(Arguments& arguments) {
   const auto flags = std::make_shared<BenchFlags>();
-  const auto option = [&app](const char* name, auto& value, const char* metavar, const char* help) {
-    CLI::Option* made = app.add_option(name, value, help);
-    return made->type_name(metavar)->allow_extra_args(false);
-  };
-  app.add_option("scenes", flags->scenes, "scene files")->required();
-  option("--config", flags->configurations, "NAME=FLAGS",
-         "castray with these rendering flags; repeatable [castray=]");
-  option("--peer", flags->peers, "NAME=COMMAND",
-         "another renderer; {scene} {spp} {seed} {out} {width} {height} {threads} are filled in; it writes a "
-         ".pfm to {out} and prints 'seconds: X'; repeatable");
-  option("--spp", flags->spp, "N,...", "budgets in samples per pixel [4,16,64]")->delimiter(',');
-  option("--seconds", flags->seconds, "X,...", "budgets in seconds of rendering")->delimiter(',');
-  option("--seeds", flags->seeds, "N", "renders per budget; medians are shown [8]");
-  option("--size", flags->size, "WxH", "in pixels [the references', else the scene's]");
-  option("--threads", flags->threads, "N", "of castray's own renders [all]");
-  app.add_flag("--ablation", flags->ablation, "also measure with each technique off in turn");
-  option("--equal-time", flags->equal_time, "X",
-         "seconds for the pictures and FLIP [the slowest one's smallest budget]");
-  option("--reference", flags->reference, "A,B",
-         "two independent images; {scene} stands for the scene's name [made, and kept in the cache]");
-  option("--reference-spp", flags->reference_spp, "N", "of each reference made [1024]");
-  option("--reference-flags", flags->reference_flags, "FLAGS",
-         "rendering flags of the references made [--reuse off]");
-  option("--cache", flags->cache, "FOLDER", "where the references made are kept [~/.cache/castray]");
-  option("--mask", flags->mask, "emitters|none",
-         "errors of the pixels away from directly seen emitters, or of all [emitters]")
-      ->check(CLI::IsMember({"emitters", "none"}).description(""));
-  option("--json", flags->json, "FILE", "write all numbers here");
-  option("--csv", flags->csv, "FILE", "write the medians here");
-  option("--html", flags->html, "FILE", "write a self-contained page here");
-  option("--svg", flags->svg, "FILE", "write the plots here");
-  app.add_flag("-q,--quiet", flags->quiet, "no progress");
+  arguments.add_positional("scenes", flags->scenes, "scene files").required();
+  arguments.add("--config", flags->configurations, "NAME=FLAGS",
+                "castray with these rendering flags; repeatable [castray=]");
+  arguments.add(
+      "--peer", flags->peers, "NAME=COMMAND",
+      "another renderer; {scene} {spp} {seed} {out} {width} {height} {threads} are filled in; it writes a "
+      ".pfm to {out} and prints 'seconds: X'; repeatable");
+  arguments.add("--spp", flags->spp, "N,...", "budgets in samples per pixel [4,16,64]").separated_by(',');
+  arguments.add("--seconds", flags->seconds, "X,...", "budgets in seconds of rendering").separated_by(',');
+  arguments.add("--seeds", flags->seeds, "N", "renders per budget; medians are shown [8]");
+  arguments.add("--size", flags->size, "WxH", "in pixels [the references', else the scene's]");
+  arguments.add("--threads", flags->threads, "N", "of castray's own renders [all]");
+  arguments.add_switch("--ablation", flags->ablation, "also measure with each technique off in turn");
+  arguments.add("--equal-time", flags->equal_time, "X",
+                "seconds for the pictures and FLIP [the slowest one's smallest budget]");
+  arguments.add("--reference", flags->reference, "A,B",
+                "two independent images; {scene} stands for the scene's name [made, and kept in the cache]");
+  arguments.add("--reference-spp", flags->reference_spp, "N", "of each reference made [1024]");
+  arguments.add("--reference-flags", flags->reference_flags, "FLAGS",
+                "rendering flags of the references made [--reuse off]");
+  arguments.add("--cache", flags->cache, "FOLDER", "where the references made are kept [~/.cache/castray]");
+  arguments
+      .add("--mask", flags->mask, "emitters|none",
+           "errors of the pixels away from directly seen emitters, or of all [emitters]")
+      .one_of({"emitters", "none"});
+  arguments.add("--json", flags->json, "FILE", "write all numbers here");
+  arguments.add("--csv", flags->csv, "FILE", "write the medians here");
+  arguments.add("--html", flags->html, "FILE", "write a self-contained page here");
+  arguments.add("--svg", flags->svg, "FILE", "write the plots here");
+  arguments.add_switch("-q,--quiet", flags->quiet, "no progress");
   return [flags] {
     if (flags->spp.empty() && flags->seconds.empty()) flags->spp = {4, 16, 64};
     if (flags->configurations.empty()) flags->configurations = {"castray="};

@@ -2,22 +2,20 @@
 
 #include <functional>
 
-namespace CLI {
-class App;
-}
+#include "cli/arguments.h"
 
 namespace castray::cli {
 
 /// What a subcommand does once its flags are parsed; returns the exit code.
 using Run = std::function<int()>;
 
-// Each declares its flags on `app` and returns what runs it.
-Run add_render(CLI::App& app);
-Run add_compare(CLI::App& app);
-Run add_accept(CLI::App& app);
-Run add_info(CLI::App& app);
-Run add_merge(CLI::App& app);
-Run add_convert(CLI::App& app);
-Run add_bench(CLI::App& app);
+// Each declares its flags and returns what runs it.
+Run add_render(Arguments& arguments);
+Run add_compare(Arguments& arguments);
+Run add_accept(Arguments& arguments);
+Run add_info(Arguments& arguments);
+Run add_merge(Arguments& arguments);
+Run add_convert(Arguments& arguments);
+Run add_bench(Arguments& arguments);
 
 }  // namespace castray::cli

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <set>
 
@@ -116,34 +115,28 @@ struct Compare {
 
 }  // namespace
 
-Run add_compare(CLI::App& app) {
+Run add_compare(Arguments& arguments) {
   auto c = std::make_shared<Compare>();
-  app.add_option("IMAGE", c->image, "a .ppm, .png, .pfm, .hdr, .exr or .film file, or a folder of them")
-      ->required();
-  app.add_option("REFERENCE", c->reference, "what it should look like")->required();
-  app.add_option("--max", c->greatest,
-                 "a limit, repeatable: mse, rmse, relmse, mae, psnr, max_error, bias, ssim, flip, flip_hdr")
-      ->type_name("METRIC=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--min", c->least, "the same, from below: for psnr and ssim, which grow with likeness")
-      ->type_name("METRIC=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--allow-pixels", c->allowance,
-                 "so many percent of the pixels may differ by more than BOUND")
-      ->type_name("PERCENT:BOUND");
-  app.add_option("--ztest", c->ztest,
-                 "films of 'render --replicates' may differ by noise only; ALPHA is the rate of false alarms")
-      ->type_name("ALPHA");
-  app.add_option("--limits", c->limits_file,
-                 "limits of a folder, as JSON: max, min, allow-pixels, ztest, images")
-      ->type_name("FILE.json");
-  app.add_option("--json", c->json, "write what was measured")->type_name("FILE");
-  app.add_option("--junit", c->junit, "write the verdicts as JUnit XML")->type_name("FILE");
-  app.add_option("--html", c->html, "write one web page to look at")->type_name("FILE");
-  app.add_option("--heatmap", c->heat_map_file, "draw the error, on a fixed logarithmic scale")
-      ->type_name("FILE.png");
-  c->flags.add_to(app);
-  app.footer("Exits with 0 within the limits, 1 if not, 2 if an image cannot be compared.");
+  arguments
+      .add_positional("IMAGE", c->image, "a .ppm, .png, .pfm, .hdr, .exr or .film file, or a folder of them")
+      .required();
+  arguments.add_positional("REFERENCE", c->reference, "what it should look like").required();
+  arguments.add("--max", c->greatest, "METRIC=VALUE",
+                "a limit, repeatable: mse, rmse, relmse, mae, psnr, max_error, bias, ssim, flip, flip_hdr");
+  arguments.add("--min", c->least, "METRIC=VALUE",
+                "the same, from below: for psnr and ssim, which grow with likeness");
+  arguments.add("--allow-pixels", c->allowance, "PERCENT:BOUND",
+                "so many percent of the pixels may differ by more than BOUND");
+  arguments.add("--ztest", c->ztest, "ALPHA",
+                "films of 'render --replicates' may differ by noise only; ALPHA is the rate of false alarms");
+  arguments.add("--limits", c->limits_file, "FILE.json",
+                "limits of a folder, as JSON: max, min, allow-pixels, ztest, images");
+  arguments.add("--json", c->json, "FILE", "write what was measured");
+  arguments.add("--junit", c->junit, "FILE", "write the verdicts as JUnit XML");
+  arguments.add("--html", c->html, "FILE", "write one web page to look at");
+  arguments.add("--heatmap", c->heat_map_file, "FILE.png", "draw the error, on a fixed logarithmic scale");
+  c->flags.add_to(arguments);
+  arguments.footer("Exits with 0 within the limits, 1 if not, 2 if an image cannot be compared.");
   return [c] { return c->run(); };
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "castray/error.h"
@@ -41,12 +40,13 @@ struct Convert {
 
 }  // namespace
 
-Run add_convert(CLI::App& app) {
+Run add_convert(Arguments& arguments) {
   auto convert = std::make_shared<Convert>();
-  app.add_option("IMAGE", convert->input, "a .ppm, .png, .pfm, .hdr, .exr or .film file")->required();
-  add_outputs(app, convert->outputs);
-  convert->flags.add_to(app);
-  convert->flags.add_bits_to(app);
+  arguments.add_positional("IMAGE", convert->input, "a .ppm, .png, .pfm, .hdr, .exr or .film file")
+      .required();
+  add_outputs(arguments, convert->outputs);
+  convert->flags.add_to(arguments);
+  convert->flags.add_bits_to(arguments);
   return [convert] { return convert->run(); };
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "castray/error.h"
@@ -10,15 +9,13 @@
 
 namespace castray::cli {
 
-void DisplayFlags::add_to(CLI::App& app) {
-  app.add_option("--exposure", exposure, "multiply by 2^STOPS before encoding")->type_name("STOPS");
-  app.add_option("--tone", tone, "curve of encoded pictures: srgb (default), linear, or gamma:G for value^G")
-      ->type_name("CURVE");
+void DisplayFlags::add_to(Arguments& arguments) {
+  arguments.add("--exposure", exposure, "STOPS", "multiply by 2^STOPS before encoding");
+  arguments.add("--tone", tone, "CURVE",
+                "curve of encoded pictures: srgb (default), linear, or gamma:G for value^G");
 }
 
-void DisplayFlags::add_bits_to(CLI::App& app) {
-  app.add_option("--bits", bits, bits_help)->type_name("auto|16");
-}
+void DisplayFlags::add_bits_to(Arguments& arguments) { arguments.add("--bits", bits, "auto|16", bits_help); }
 
 bool parse_bits(const std::string& flag, const std::string& text) {
   return parse_choice<bool>(flag, text, {{"auto", false}, {"16", true}});
@@ -29,11 +26,10 @@ Display DisplayFlags::display() const {
   return {tone.empty() ? ToneCurve{} : parse_tone_curve(tone), exposure, parse_bits("bits", bits)};
 }
 
-void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& files) {
-  app.add_option("-o,--output", files, "write here; may be repeated; .ppm .png .pfm .hdr .exr or .film")
-      ->required()
-      ->type_name("FILE")
-      ->allow_extra_args(false);
+void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files) {
+  arguments
+      .add("-o,--output", files, "FILE", "write here; may be repeated; .ppm .png .pfm .hdr .exr or .film")
+      .required();
 }
 
 void warn_of_nonfinite(const Image& image, const std::filesystem::path& file) {

@@ -5,10 +5,7 @@
 #include <vector>
 
 #include "castray/image.h"
-
-namespace CLI {
-class App;
-}
+#include "cli/arguments.h"
 
 namespace castray::cli {
 
@@ -19,8 +16,8 @@ struct DisplayFlags {
 
   std::string bits = "auto";
 
-  void add_to(CLI::App& app);
-  void add_bits_to(CLI::App& app);  ///< for commands that write images
+  void add_to(Arguments& arguments);
+  void add_bits_to(Arguments& arguments);  ///< for commands that write images
   bool given() const { return exposure != 0 || !tone.empty(); }
   /// Throws InputError where a value cannot be.
   Display display() const;
@@ -32,7 +29,7 @@ inline constexpr const char* bits_help =
     "16: .ppm, .png and .exr hold 16 bits a value [auto: .ppm and .png 8, .exr 32]";
 
 /// -o FILE, repeatable and required.
-void add_outputs(CLI::App& app, std::vector<std::filesystem::path>& files);
+void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files);
 
 /// Says on stderr how many pixels of an image for display are not finite, and what is shown in their place.
 void warn_of_nonfinite(const Image& image, const std::filesystem::path& file);

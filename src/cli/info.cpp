@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -114,9 +113,9 @@ int print_info(const std::string& file) {
 
 }  // namespace
 
-Run add_info(CLI::App& app) {
+Run add_info(Arguments& arguments) {
   const auto file = std::make_shared<std::string>();
-  app.add_option("SCENE", *file, "scene .json or .obj; or an image or film")->required();
+  arguments.add_positional("SCENE", *file, "scene .json or .obj; or an image or film").required();
   return [file] {
     if (!is_image_format(*file)) return print_info(*file);
     print_image_info(*file);

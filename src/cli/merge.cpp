@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "castray/error.h"
@@ -34,12 +33,13 @@ struct Merge {
 
 }  // namespace
 
-Run add_merge(CLI::App& app) {
+Run add_merge(Arguments& arguments) {
   auto merge = std::make_shared<Merge>();
-  app.add_option("FILM", merge->inputs, "films of disjoint --samples ranges of one render")->required();
-  add_outputs(app, merge->outputs);
-  merge->flags.add_to(app);
-  merge->flags.add_bits_to(app);
+  arguments.add_positional("FILM", merge->inputs, "films of disjoint --samples ranges of one render")
+      .required();
+  add_outputs(arguments, merge->outputs);
+  merge->flags.add_to(arguments);
+  merge->flags.add_bits_to(arguments);
   return [merge] { return merge->run(); };
 }
 

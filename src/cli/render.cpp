@@ -1,5 +1,3 @@
-#include <CLI/CLI.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,36 +32,21 @@ struct RenderCommand {
   bool quiet = false, verbose = false;
 };
 
-void declare_flags(CLI::App& app, RenderCommand& command) {
-  app.add_option("scene", command.scene, "scene .json, or .obj")->type_name("SCENE")->required();
-  for (const RenderFlag& flag : render_flags()) {
-    const std::string name = std::string("--") + flag.name;
-    if (flag.metavar)
-      app.add_option_function<std::string>(
-             name,
-             [&command, &flag](const std::string& value) {
-               command.given.push_back({&flag, value});
-             },
-             flag.help)
-          ->type_name(flag.metavar)
-          ->group(flag.group)
-          ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-    else
-      app.add_flag_callback(
-             name,
-             [&command, &flag] {
-               command.given.push_back({&flag, "on"});
-             },
-             flag.help)
-          ->group(flag.group);
-  }
-  app.add_option("-o,--output", command.outputs,
-                 "image or film, repeatable; .ppm .png .pfm .hdr .exr .film [SCENE.png here]")
-      ->type_name("FILE")
-      ->group("Output")
-      ->allow_extra_args(false);
-  app.add_flag("-q", command.quiet, "say nothing but errors")->group("Output");
-  app.add_flag("-v", command.verbose, "say more")->group("Output");
+void declare_flags(Arguments& arguments, RenderCommand& command) {
+  arguments.add_positional("scene", command.scene, "scene .json, or .obj").required();
+  for (const RenderFlag& flag : render_flags())
+    arguments
+        .add_text(std::string("--") + flag.name, flag.metavar, flag.help,
+                  [&command, &flag](const std::string& value) {
+                    command.given.push_back({&flag, value});
+                  })
+        .group(flag.group);
+  arguments
+      .add("-o,--output", command.outputs, "FILE",
+           "image or film, repeatable; .ppm .png .pfm .hdr .exr .film [SCENE.png here]")
+      .group("Output");
+  arguments.add_switch("-q", command.quiet, "say nothing but errors").group("Output");
+  arguments.add_switch("-v", command.verbose, "say more").group("Output");
 }
 
 bool is_given(const RenderCommand& command, std::string_view flag) {
@@ -161,10 +144,10 @@ int render_scene(const RenderCommand& command) {
 
 }  // namespace
 
-Run add_render(CLI::App& app) {
+Run add_render(Arguments& arguments) {
   auto command = std::make_shared<RenderCommand>();
-  declare_flags(app, *command);
-  app.footer(
+  declare_flags(arguments, *command);
+  arguments.footer(
       "Exit codes: 0 done; 1 stopped by --time-limit or, short of --target-error, by --spp; 2 error; 130 "
       "interrupted (what was rendered is saved).");
   return [command] { return render_scene(*command); };
