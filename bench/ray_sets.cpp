@@ -38,7 +38,7 @@ class RayMaker {
     float t, b1, b2;
     std::uint32_t triangle;
     kernel_.bvh_closest(bvh_, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z, &infinity, &t, &triangle, &b1, &b2, 1});
-    if (triangle == no_triangle) return;
+    if (triangle == no_hit) return;
     const Index3& v = mesh_.triangles[triangle];
     const Vec3d p0(mesh_.positions[v[0]]), p1(mesh_.positions[v[1]]), p2(mesh_.positions[v[2]]);
     Vec3d normal = cross(p1 - p0, p2 - p0);

@@ -10,7 +10,7 @@
 #include "ray_bench.h"
 #include "ray_sets.h"
 #include "tracers.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/choose_kernel.h"
 
 namespace castray {
 namespace {

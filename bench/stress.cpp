@@ -8,7 +8,7 @@
 
 #include "core/tool_main.h"
 #include "stress_checks.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/choose_kernel.h"
 
 namespace castray {
 namespace {

@@ -7,7 +7,7 @@
 #include "geometry/list.h"
 #include "geometry/wide_bvh.h"
 #include "scene/scene_builder.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/choose_kernel.h"
 
 namespace castray {
 namespace {

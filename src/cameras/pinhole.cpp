@@ -1,3 +1,5 @@
+#include "cameras/pinhole.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -5,7 +7,7 @@
 #include <numbers>
 
 #include "castray/error.h"
-#include "castray/scene.h"
+#include "core/put.h"
 
 namespace castray {
 
@@ -58,6 +60,16 @@ Camera automatic_camera(const Scene& scene) {
   const double half_angle = std::atan(std::tan(fov * std::numbers::pi / 360) * narrower);
   const Vec3d towards_viewer = normalize(Vec3d{0.5, 0.4, 1});
   return make_camera(middle + towards_viewer * (radius / std::sin(half_angle)), middle, {0, 1, 0}, fov);
+}
+
+KernelCamera kernel_camera(const Camera& camera, int width, int height) {
+  KernelCamera k{};
+  const Vec3d corner = camera.direction(0, 0, width, height);
+  put(k.position, camera.position);
+  put(k.corner, corner);
+  put(k.dx, (camera.direction(width, 0, width, height) - corner) / double(width));
+  put(k.dy, (camera.direction(0, height, width, height) - corner) / double(height));
+  return k;
 }
 
 }  // namespace castray

@@ -1,7 +1,8 @@
 #pragma once
 
+#include "geometry/facet_records.h"
+#include "geometry/ray_batches.h"
 #include "simd/vec_lanes.h"
-#include "wavefront/kernel_api.h"
 
 // Rays in lanes against a flat list of facets, each broadcast.
 //
@@ -17,8 +18,6 @@ struct ListHit {
   Uint facet;
   Float inside;  ///< how far from the facet's nearest edge the ray passes; negative outside
 };
-
-inline constexpr uint32_t no_hit = 0xffffffffu;
 
 inline constexpr float edge_zone = 4;  ///< in units of the slack: within this of an edge, hits are settled
 

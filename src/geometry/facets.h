@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "castray/scene.h"
+#include "geometry/facet_records.h"
 #include "geometry/list.h"
-#include "wavefront/kernel_api.h"
 
 namespace castray {
 

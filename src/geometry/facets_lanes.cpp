@@ -6,6 +6,13 @@ namespace castray::CASTRAY_ISA {
 
 namespace {
 
+/// Stores the first `lanes`.
+template <class T, class V>
+CASTRAY_INLINE void store_some(T* to, V v, uint32_t lanes) {
+  if (lanes == width) return store(to, v);
+  for (uint32_t l = 0; l < lanes; ++l) to[l] = lane(v, (int)l);
+}
+
 /// Calls use(i, o, d, lanes) for each `width` rays of a batch.
 template <class Batch, class Use>
 CASTRAY_INLINE void for_each_vector(const Batch& rays, Use use) {
@@ -22,18 +29,17 @@ CASTRAY_INLINE void for_each_vector(const Batch& rays, Use use) {
 void facets_closest(const FacetList& list, float slack, const RayBatch& rays) {
   for_each_vector(rays, [&](uint32_t i, const Vec& o, const Vec& d, uint32_t lanes) {
     const ListHit hit = list_closest(list, o, d, Float(slack));
-    for (uint32_t l = 0; l < lanes; ++l) {
-      rays.t[i + l] = lane(hit.t, (int)l);
-      rays.triangle[i + l] = lane(hit.facet, (int)l);
-      rays.b1[i + l] = rays.b2[i + l] = 0;
-    }
+    store_some(rays.t + i, hit.t, lanes);
+    store_some(rays.triangle + i, hit.facet, lanes);
+    store_some(rays.b1 + i, Float(0.f), lanes);
+    store_some(rays.b2 + i, Float(0.f), lanes);
   });
 }
 
 void facets_occluded(const FacetList& list, float slack, const ShadowBatch& rays) {
   for_each_vector(rays, [&](uint32_t i, const Vec& o, const Vec& d, uint32_t lanes) {
-    const uint32_t blocked = bits(list_occluded(list, o, d, Float(slack)));
-    for (uint32_t l = 0; l < lanes; ++l) rays.occluded[i + l] = blocked >> l & 1;
+    uint32_t blocked = bits(list_occluded(list, o, d, Float(slack)));
+    for (uint32_t l = 0; l < lanes; ++l, blocked >>= 1) rays.occluded[i + l] = blocked & 1;
   });
 }
 

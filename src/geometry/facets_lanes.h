@@ -1,7 +1,8 @@
 #pragma once
 
+#include "geometry/facet_records.h"
+#include "geometry/ray_batches.h"
 #include "simd/isa_lanes.h"
-#include "wavefront/kernel_api.h"
 
 namespace castray::CASTRAY_ISA {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "geometry/ray.h"
-#include "geometry/wide_bvh_view.h"
+#include "geometry/ray_batches.h"
 
 namespace castray {
 

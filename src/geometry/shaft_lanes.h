@@ -1,7 +1,8 @@
 #pragma once
 
+#include "geometry/facet_records.h"
+#include "geometry/wide_bvh_view.h"
 #include "simd/vec_lanes.h"
-#include "wavefront/kernel_api.h"
 
 // Visibility of one point to all points of a box at once: the hull of the two is a shaft, and most shafts are
 // empty.
@@ -23,14 +24,22 @@ struct Shaft {
   alignas(64) float normal[3][max_blockers + 16], base[max_blockers + 16];
 };
 
+/// How many packets of triangles, and four times as many nodes, may lie in a shaft before a ray for each
+/// point of the box is cheaper. Where that was too few, the next shafts to the same box are given up sooner.
+struct ShaftBudget {
+  static constexpr int most = max_blockers / packet_size, least = 3;
+  int packets = most;
+
+  int nodes() const { return 4 * packets; }
+  void gave_up() { packets = packets / 2 > least ? packets / 2 : least; }
+  void succeeded(int met) {
+    if (met > packets / 2 && packets * 2 <= most) packets *= 2;
+  }
+};
+
 /// The greatest a . (x - y) over the box, with y at distance `center` from its middle.
 CASTRAY_INLINE Float support(Vec a, Vec center, Vec half) {
   return dot(a, center) + fma(abs(a.x), half.x, fma(abs(a.y), half.y, abs(a.z) * half.z));
-}
-
-/// Without fused operations: the exact negative for -b.
-CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 /// Where a pyramid with these planes (see Shaft) meets the box.
@@ -41,60 +50,6 @@ CASTRAY_INLINE Mask meets_box(const Vec (&edge)[corners], const Float (&margin)[
   for (int k = 0; k < corners; ++k)
     meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
   return meets;
-}
-
-/// Adds the facets with the given corners, relative to y, whose pyramid meets the box; `center` too is
-/// relative to y.
-template <int corners>
-CASTRAY_INLINE void add_pyramids(const Vec (&corner)[corners], const Vec& normal, const Vec& center,
-                                 const Vec& half, Mask lanes, Shaft& out) {
-  const Float above = dot(normal, corner[0]);
-  const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
-                   flip_by_sign(normal.z, above)};
-  // A point of the box on the facet must not be hidden by it, however its distance from the plane and this
-  // one are rounded: 4u of the terms each.
-  const Vec size = magnitude(normal), reach = magnitude(center) + half;
-  const Float base = fma(dot(size, reach), Float(0x1p-21f), abs(above));
-  Vec edge[corners];
-  Float margin[corners];
-  for (int k = 0; k < corners; ++k) {
-    const Vec &from = corner[k], &to = corner[(k + 1) % corners];
-    // Twice from x to, rounded in proportion to the edge's length, however near from and to are. For the
-    // facet on the edge's other side it is the exact negative: no light passes between the two.
-    const Vec sum = from + to, along = to - from, e = antisymmetric_cross(sum, along);
-    edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
-    margin[k] = sum_abs(sum) * sum_abs(along) * Float(0x1p-21f);
-  }
-  const Mask meets = lanes & meets_box(edge, margin, beyond, base, center, half);
-  if (none(meets)) return;
-  const int n = out.count;
-  for (int k = 0; k < corners; ++k) {
-    compress_store(out.edge[k][0] + n, meets, edge[k].x);
-    compress_store(out.edge[k][1] + n, meets, edge[k].y);
-    compress_store(out.edge[k][2] + n, meets, edge[k].z);
-    compress_store(out.margin[k] + n, meets, margin[k]);
-  }
-  compress_store(out.normal[0] + n, meets, beyond.x);
-  compress_store(out.normal[1] + n, meets, beyond.y);
-  compress_store(out.normal[2] + n, meets, beyond.z);
-  compress_store(out.base + n, meets, base);
-  out.count += count(meets);
-}
-
-/// The blockers whose pyramid from y meets the box.
-CASTRAY_INLINE void make_shaft(const BlockerList& blockers, const Vec& y, const Box& box, Shaft& out) {
-  out.count = 0;
-  const Vec center = broadcast(box.center) - y, half = broadcast(box.half);
-  for (uint32_t i = 0; i < blockers.count; i += width) {
-    Vec corner[4];
-    for (int k = 0; k < 4; ++k)
-      corner[k] = Vec{load(blockers.corner[k][0] + i), load(blockers.corner[k][1] + i),
-                      load(blockers.corner[k][2] + i)} -
-                  y;
-    const Vec normal{load(blockers.normal[0] + i), load(blockers.normal[1] + i),
-                     load(blockers.normal[2] + i)};
-    add_pyramids(corner, normal, center, half, first_lanes((int)(blockers.count - i)), out);
-  }
 }
 
 /// The numbers of the pyramids, in lanes, that meet a box around y + center; returns how many.

@@ -25,7 +25,7 @@ CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t fi
   }
   for (uint32_t i = 0; i < count; ++i) {
     hits.t[i] = __builtin_inff();
-    hits.triangle[i] = no_triangle;
+    hits.triangle[i] = no_hit;
     hits.b1[i] = hits.b2[i] = 0;
   }
   if (bvh.triangles > 0) trace_group<any>(bvh, group, count, stack_t, stack_child, hits);
@@ -57,7 +57,7 @@ void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) {
   for (uint32_t first = 0; first < rays.count; first += group_size) {
     const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
     trace<true>(bvh, rays, first, count, group, stack_t, stack_child, {t, triangle, b1, b2});
-    for (uint32_t i = 0; i < count; ++i) rays.occluded[first + i] = triangle[i] != no_triangle;
+    for (uint32_t i = 0; i < count; ++i) rays.occluded[first + i] = triangle[i] != no_hit;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/ray_batches.h"
 #include "geometry/wide_bvh_view.h"
 #include "simd/isa_lanes.h"
 

@@ -2,14 +2,12 @@
 
 #include <stdint.h>
 
-// A wide bounding volume hierarchy as the kernels see it, and the batches of rays they trace through it:
-// plain data, the same for every instruction set.
+// A wide bounding volume hierarchy as kernels read it: plain data, the same for every instruction set.
 
 namespace castray {
 
 inline constexpr int bvh_width = 8;    ///< children of a node
 inline constexpr int packet_size = 8;  ///< triangles tested at once
-inline constexpr uint32_t no_triangle = 0xffffffffu;
 
 /// Nodes and triangle packets lie in one array of blocks, a cache line each. A child is its first block times
 /// child_unit, plus leaf_flag + packets - 1 if it is a leaf.
@@ -40,22 +38,6 @@ struct WideBvhView {
   uint32_t triangles;
   int depth;                 ///< edges from the root to its deepest leaf
   float lower[3], upper[3];  ///< of everything
-};
-
-/// Rays origin + t * direction, 0 < t < t_max, and what they hit.
-struct RayBatch {
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_max;
-  float* t;            ///< of the nearest hit, infinity if there is none
-  uint32_t* triangle;  ///< `no_triangle` if there is none; of equally near ones the lowest
-  float *b1, *b2;      ///< the hit is at (1-b1-b2) v0 + b1 v1 + b2 v2
-  uint32_t count;
-};
-
-/// Rays of which only whether they hit anything is asked.
-struct ShadowBatch {
-  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_max;
-  uint8_t* occluded;  ///< 1 or 0
-  uint32_t count;
 };
 
 }  // namespace castray

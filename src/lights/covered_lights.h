@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "castray/scene.h"
-#include "wavefront/kernel_api.h"
+#include "geometry/facet_records.h"
 
 namespace castray {
 

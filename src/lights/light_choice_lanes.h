@@ -1,7 +1,7 @@
 #pragma once
 
+#include "lights/light_records.h"
 #include "simd/vec_lanes.h"
-#include "wavefront/kernel_api.h"
 
 // The choice of a light by what it may bring to a point: Conty Estevez and Kulla 2018, "Importance Sampling
 // of Many Lights with Adaptive Tree Splitting", section 3, without splitting.
@@ -34,9 +34,14 @@ CASTRAY_INLINE Bounds broadcast(const LightBounds& b) {
   return {broadcast(b.center), broadcast(b.axis),   Float(b.radius),
           Float(b.cos_spread), Float(b.sin_spread), Float(b.power)};
 }
-CASTRAY_INLINE Bounds gather_bounds(const LightBounds& first, Uint offset) {
-  return {gather_vec(first.center, offset),  gather_vec(first.axis, offset),    gather(&first.radius, offset),
-          gather(&first.cos_spread, offset), gather(&first.sin_spread, offset), gather(&first.power, offset)};
+CASTRAY_INLINE Bounds gather_bounds(const LightBounds* table, Uint offset) {
+  const auto number = [&](float LightBounds::*field) { return gather(table, field, offset); };
+  return {gather_vec(table, &LightBounds::center, offset),
+          gather_vec(table, &LightBounds::axis, offset),
+          number(&LightBounds::radius),
+          number(&LightBounds::cos_spread),
+          number(&LightBounds::sin_spread),
+          number(&LightBounds::power)};
 }
 
 /// Proportional to a bound of the light that may arrive; never 0 where some may, whatever the rounding.
@@ -95,18 +100,40 @@ CASTRAY_INLINE LightChoice choose_by_importance(const LightList& list, Float u, 
   for (int level = 0; any(inner); ++level) {
     if (level == levels_of_u) c.u = deep_u;
     const Uint at = select(inner, c.next, Uint(0u)) * (2 * stride);
-    const Float a = importance(gather_bounds(*list.tree, at), r),
-                b = importance(gather_bounds(*list.tree, at + Uint(stride)), r);
+    const Float a = importance(gather_bounds(list.tree, at), r),
+                b = importance(gather_bounds(list.tree, at + Uint(stride)), r);
     const Float inverse = Float(1.f) / max(a + b, Float(0x1p-120f)), p = a * inverse, q = b * inverse;
     const Mask first = c.u < p;
     c.u = select(first, c.u / max(p, Float(0x1p-24f)), (c.u - p) / max(q, Float(0x1p-24f)));
     c.u = max(min(c.u, Float(0x1.fffffep-1f)), Float(0.f));
     c.probability = c.probability * select(inner, select(first, p, q), Float(1.f));
-    const Uint child = gather(&list.tree->next, at + select(first, Uint(0u), Uint(stride)));
+    const Uint child = gather(list.tree, &LightBounds::next, at + select(first, Uint(0u), Uint(stride)));
     c.next = select(inner, child, c.next);
     inner = inner & (child < Uint(light_leaf)) & (c.probability > Float(0.f));
   }
   return {c.next & ~light_leaf, c.probability};
+}
+
+/// The light whose stretch of the cumulative probabilities holds u.
+CASTRAY_INLINE Uint choose_by_power(const LightList& list, Float u) {
+  Uint low(0u);
+  for (uint32_t step = list.count > 1 ? 1u << (31 - __builtin_clz(list.count - 1)) : 0u; step; step >>= 1) {
+    const Uint next = low + Uint(step);
+    const Mask in_range = next < Uint(list.count);
+    const Float start = gather(list.lights, &KernelLight::cumulative,
+                               select(in_range, next, Uint(0u)) * uint32_t{light_floats});
+    low = select(in_range & (start <= u), next, low);
+  }
+  return low;
+}
+
+/// One of the lights, for the receiver. Of u, `deep` serves where u's digits do not suffice.
+CASTRAY_INLINE LightChoice choose_light(const LightList& list, Float u, Float deep,
+                                        const Receiver& receiver) {
+  if (list.cut_count > 0) return choose_by_importance(list, u, deep, receiver);
+  if (list.count == 1) return {Uint(0u), Float(1.f)};
+  const Uint light = choose_by_power(list, u);
+  return {light, gather(list.lights, &KernelLight::probability, light * uint32_t{light_floats})};
 }
 
 }  // namespace castray::CASTRAY_ISA

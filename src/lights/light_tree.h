@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "wavefront/kernel_api.h"
+#include "lights/light_records.h"
 
 namespace castray {
 

@@ -36,8 +36,6 @@ struct BsdfSample {
   Float eta2;  ///< the scale of radiance by refraction that `weight` holds, inverted
 };
 
-CASTRAY_INLINE Vec black() { return {Float(0.f), Float(0.f), Float(0.f)}; }
-
 CASTRAY_INLINE BsdfValue no_value() { return {black(), Float(0.f)}; }
 
 CASTRAY_INLINE BsdfValue choose(Mask m, const BsdfValue& a, const BsdfValue& b) {

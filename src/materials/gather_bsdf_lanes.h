@@ -9,22 +9,22 @@ namespace castray::CASTRAY_ISA {
 /// front.
 template <uint32_t features>
 CASTRAY_INLINE Bsdf gather_bsdf(const KernelScene& scene, Uint material, const Parameters<features>& p) {
-  const KernelMaterial& first = *scene.materials;
+  const KernelMaterial* table = scene.materials;
   const Uint record = material & 0x7fffffffu;
   const Mask front = (material >> 31) == Uint(1u);
-  const Float ior = gather(&first.ior, record);
+  const Float ior = gather(table, &KernelMaterial::ior, record);
   Bsdf b;
-  b.type = gather(&first.type, record);
+  b.type = gather(table, &KernelMaterial::type, record);
   b.kd = p.kd();
   b.eta = select(front, ior, Float(1.f) / ior);
-  b.albedo = gather(&first.albedo, record);
+  b.albedo = gather(table, &KernelMaterial::albedo, record);
   b.albedos = scene.albedos;
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];
   } else {
-    b.ks = gather_vec(first.value + slot_ks, record);
-    b.alpha = gather(first.value + slot_alpha, record);
+    b.ks = gather_vec(fields_of(table, &KernelMaterial::value) + slot_ks, record);
+    b.alpha = gather(fields_of(table, &KernelMaterial::value) + slot_alpha, record);
   }
   return b;
 }

@@ -6,10 +6,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-inline constexpr float pi = 3.14159265358979f;
-
-CASTRAY_INLINE Float square(Float x) { return x * x; }
-CASTRAY_INLINE Vec normalize(Vec a) { return a * (Float(1.f) / sqrt(length_squared(a))); }
 CASTRAY_INLINE Vec reflect(Vec w, Vec h) { return fma(h, Float(2.f) * dot(w, h), -w); }
 
 CASTRAY_INLINE Float ggx_stretched_length(Float alpha, Vec w) {

@@ -16,8 +16,8 @@ CASTRAY_INLINE Vec lobe_albedo(const Bsdf& b, Float cosine) {
   const Float c0 = square(to_float(i) * step), c1 = square(to_float(i + 1u) * step);
   const Float t = (cosine - c0) / (c1 - c0);
   const Uint at = b.albedo + i;
-  const Float a0 = gather(b.albedos->a, at), a1 = gather(b.albedos->a, at + 1u);
-  const Float b0 = gather(b.albedos->b, at), b1 = gather(b.albedos->b, at + 1u);
+  const Float a0 = gather(b.albedos, &KernelAlbedo::a, at), a1 = gather(b.albedos, &KernelAlbedo::a, at + 1u);
+  const Float b0 = gather(b.albedos, &KernelAlbedo::b, at), b1 = gather(b.albedos, &KernelAlbedo::b, at + 1u);
   const Float base = fma(t, b1 - b0, b0);
   return fma(b.ks, fma(t, a1 - a0, a0), Vec{base, base, base});
 }

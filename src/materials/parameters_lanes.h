@@ -34,9 +34,12 @@ CASTRAY_INLINE Parameters<features> load(const ParameterArray<N>& from, int i) {
   return p;
 }
 template <int N>
+CASTRAY_INLINE Vec load_vec(const ParameterArray<N>& from, int slot, int i) {
+  return {load(from.value[slot] + i), load(from.value[slot + 1] + i), load(from.value[slot + 2] + i)};
+}
+template <int N>
 CASTRAY_INLINE Vec load_kd(const ParameterArray<N>& from, int i) {
-  return {load(from.value[slot_kd] + i), load(from.value[slot_kd + 1] + i),
-          load(from.value[slot_kd + 2] + i)};
+  return load_vec(from, slot_kd, i);
 }
 template <int N>
 CASTRAY_INLINE void store_kd(ParameterArray<N>& to, int i, const Vec& kd) {
@@ -66,16 +69,12 @@ CASTRAY_INLINE void compress_store(ParameterArray<N>& to, int n, Mask m, const P
   for (int k = 0; k < carried_floats<features>; ++k) compress_store(to.value[k] + n, m, p.value[k]);
 }
 
-template <uint32_t features, int N, int M>
-CASTRAY_INLINE void copy_entry(ParameterArray<N>& to, uint32_t i, const ParameterArray<M>& from, int k) {
-  for (int v = 0; v < carried_floats<features>; ++v) to.value[v][i] = from.value[v][k];
-}
-
 /// What the material at offset `record` says itself.
 template <uint32_t features>
 CASTRAY_INLINE Parameters<features> gather_parameters(const KernelScene& scene, Uint record) {
   Parameters<features> p;
-  for (int k = 0; k < carried_floats<features>; ++k) p.value[k] = gather(&scene.materials->value[k], record);
+  for (int k = 0; k < carried_floats<features>; ++k)
+    p.value[k] = gather(fields_of(scene.materials, &KernelMaterial::value) + k, record);
   return p;
 }
 

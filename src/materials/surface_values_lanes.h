@@ -55,7 +55,7 @@ CASTRAY_INLINE void apply_maps(const KernelDetail& d, uint32_t wanted, const Map
 /// Calls `work` for each material with details of the lanes in `active`, with the lanes that have it.
 template <class Work>
 CASTRAY_INLINE void for_each_detail(const KernelScene& scene, Uint material, Mask active, Work work) {
-  const Uint details = gather(&scene.materials->detail, material);
+  const Uint details = gather(scene.materials, &KernelMaterial::detail, material);
   for (uint32_t left = bits(active & ~(details == Uint(0u))); left;) {
     const uint32_t detail = lane(details, __builtin_ctz(left));
     const Mask here = details == Uint(detail);
@@ -67,8 +67,8 @@ CASTRAY_INLINE void for_each_detail(const KernelScene& scene, Uint material, Mas
 /// Replaces a material's own values, the vertex_floats from `value` on, by those of the points in its lanes.
 inline __attribute__((noinline)) void resolve_values(const KernelScene& scene, const Uint& material,
                                                      const TrianglePlace& at, Float* value) {
-  if (none(~(gather(&scene.materials->detail, material) == Uint(0u)))) return;
-  const MapInputs in = map_inputs(scene.triangles, at);
+  if (none(~(gather(scene.materials, &KernelMaterial::detail, material) == Uint(0u)))) return;
+  const MapInputs in = map_inputs(scene.geometry.tree.triangles, at);
   for_each_detail(scene, material, Mask(true), [&](const KernelDetail& d, Mask here) {
     Float own[parameter_floats];
     for (int k = 0; k < parameter_floats; ++k) own[k] = Float(d.value[k]);
@@ -81,8 +81,8 @@ inline __attribute__((noinline)) void resolve_values(const KernelScene& scene, c
 
 /// The share of the surface that is there at points.
 CASTRAY_INLINE Float coverage_at(const KernelScene& scene, Uint material, const TrianglePlace& at) {
-  Float coverage = gather(&scene.materials->coverage, material);
-  const MapInputs in = map_inputs(scene.triangles, at);
+  Float coverage = gather(scene.materials, &KernelMaterial::coverage, material);
+  const MapInputs in = map_inputs(scene.geometry.tree.triangles, at);
   for_each_detail(scene, material, Mask(true), [&](const KernelDetail& d, Mask here) {
     Float own[parameter_floats];
     own[slot_coverage] = Float(d.value[slot_coverage]);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/hit_point_lanes.h"
+#include "geometry/triangle_table_lanes.h"
 
 // Textures and smooth normals, interpolated over a triangle.
 

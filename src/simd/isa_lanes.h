@@ -19,4 +19,7 @@
 #define CASTRAY_WIDTH 1
 #endif
 
+/// Of what works on a few lane vectors.
 #define CASTRAY_INLINE inline __attribute__((always_inline))
+/// Of templates that work on a whole wave or tile: compiled once a kernel, however often it calls them.
+#define CASTRAY_STAGE __attribute__((noinline))

@@ -219,23 +219,22 @@ CASTRAY_INLINE Float max(Float a, Float b) { return a.v[0] > b.v[0] ? a : b; }
 #endif
 CASTRAY_INLINE Float fma(Float a, Float b, Float c) { return a * b + c; }
 CASTRAY_INLINE Float gather(const float* base, Uint i) {
-  RawFloat v;
-  for (int l = 0; l < width; ++l) v[l] = base[i.v[l]];
-  return v;
+  alignas(4 * width) float v[width];
+  for (int l = 0; l < width; ++l) __builtin_memcpy(v + l, base + i.v[l], sizeof *v);
+  return load(v);
 }
 CASTRAY_INLINE Uint gather(const uint32_t* base, Uint i) {
-  RawUint v;
-  for (int l = 0; l < width; ++l) v[l] = base[i.v[l]];
-  return v;
-}
-CASTRAY_INLINE void compress_store(float* p, Mask m, Float a) {
-  for (int l = 0; l < width; ++l)
-    if (m.m[l]) *p++ = a.v[l];
+  alignas(4 * width) uint32_t v[width];
+  for (int l = 0; l < width; ++l) __builtin_memcpy(v + l, base + i.v[l], sizeof *v);
+  return load(v);
 }
 CASTRAY_INLINE void compress_store(uint32_t* p, Mask m, Uint a) {
-  for (int l = 0; l < width; ++l)
-    if (m.m[l]) *p++ = a.v[l];
+  for (int l = 0; l < width; ++l) {
+    const uint32_t value = a.v[l];
+    if (m.m[l]) __builtin_memcpy(p++, &value, sizeof value);
+  }
 }
+CASTRAY_INLINE void compress_store(float* p, Mask m, Float a) { compress_store((uint32_t*)p, m, as_uint(a)); }
 /// table[i] for i < 16.
 CASTRAY_INLINE Uint lookup16(const uint32_t* table, Uint i) { return gather(table, i); }
 
@@ -315,6 +314,23 @@ CASTRAY_INLINE Float copy_sign(Float a, Float sign) {
 }
 CASTRAY_INLINE float lane(Float a, int l) { return a.v[l]; }
 CASTRAY_INLINE uint32_t lane(Uint a, int l) { return a.v[l]; }
+
+/// Where the fields of a table's records begin: the table's address and a distance, which may be indexed past
+/// the first record. The address of the first record's own field may not: the compiler takes it that the
+/// index stays inside.
+template <class Record, class Field>
+CASTRAY_INLINE const Field* fields_of(const Record* table, Field Record::*field) {
+  return (const Field*)((const char*)table + ((const char*)&(table->*field) - (const char*)table));
+}
+template <class Record, class Field, int N>
+CASTRAY_INLINE const Field* fields_of(const Record* table, Field (Record::*field)[N]) {
+  return (const Field*)((const char*)table + ((const char*)&(table->*field) - (const char*)table));
+}
+/// A field, or its first element, of the records that begin `offset` words of 32 bits after the table.
+template <class Record, class Field>
+CASTRAY_INLINE auto gather(const Record* table, Field Record::*field, Uint offset) {
+  return gather(fields_of(table, field), offset);
+}
 
 /// `width` numbers from `i` on, zeros behind the last.
 CASTRAY_INLINE Float load_padded(const float* from, uint32_t i, uint32_t count) {

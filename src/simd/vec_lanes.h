@@ -57,10 +57,21 @@ CASTRAY_INLINE void compress_store(VecArray<N>& a, int i, Mask m, Vec v) {
   compress_store(a.y + i, m, v.y);
   compress_store(a.z + i, m, v.z);
 }
-/// Entry i of a table of records of `stride` floats, fields `field` to `field` + 2.
-CASTRAY_INLINE Vec gather_vec(const float* field, Uint offset) {
-  return {gather(field, offset), gather(field + 1, offset), gather(field + 2, offset)};
+/// The three floats that begin `offset` floats after `base`.
+CASTRAY_INLINE Vec gather_vec(const float* base, Uint offset) {
+  return {gather(base, offset), gather(base + 1, offset), gather(base + 2, offset)};
 }
+/// A field of three floats, of the records that begin `offset` floats after the table.
+template <class Record>
+CASTRAY_INLINE Vec gather_vec(const Record* table, float (Record::*field)[3], Uint offset) {
+  return gather_vec(fields_of(table, field), offset);
+}
+
+inline constexpr float pi = 3.14159265358979f;
+
+CASTRAY_INLINE Float square(Float x) { return x * x; }
+CASTRAY_INLINE Vec black() { return {Float(0.f), Float(0.f), Float(0.f)}; }
+CASTRAY_INLINE Vec normalize(Vec a) { return a * (Float(1.f) / sqrt(length_squared(a))); }
 
 struct SinCos {
   Float sin, cos;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "simd/isa_lanes.h"
-#include "wavefront/kernel_api.h"
+#include "wavefront/wave_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -10,6 +9,7 @@ struct Context {
   const KernelScene& scene;
   const KernelOptions& options;
   const TileJob& job;
+  const FarEnds& ends;
   uint64_t rays = 0;
 };
 

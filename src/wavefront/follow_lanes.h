@@ -4,6 +4,7 @@
 #include "wavefront/light_lanes.h"
 #include "wavefront/scatter_lanes.h"
 #include "wavefront/surfaces_lanes.h"
+#include "wavefront/trace_lanes.h"
 
 // The stages that a batch of paths goes through, each from arrays to arrays:
 //
@@ -24,18 +25,18 @@ CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges)
 }
 
 /// Lights the vertices, which are number `vertex` of their paths, and follows the paths to their ends.
-template <uint32_t features>
-CASTRAY_INLINE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
   const bool may_find_lights = c.options.mis || (features & feature_materials);
   Vertices* current = &vertices;
   for (; may_have_edges(c.options, vertex + 2); ++vertex) {
-    light<features>(c, *current, vertex, s.shadow_rays);
-    add_unblocked<features>(c, s.ends, s.shadow_rays, s.radiance);
+    light<Geometry, features>(c, *current, vertex, s.shadow_rays);
+    add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
     if (vertex == 0) keep_direct(c, s);
     scatter<features>(c, *current, vertex, roulette, s.paths);
     if (s.paths.count == 0) return;
-    closest<features>(c, s.paths, s.ends, false, s.hits);
-    surfaces<features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
+    closest<Geometry>(c, s.paths, false, s.hits);
+    surfaces<Geometry, features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
     current = &s.vertices;
   }
 }

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "wavefront/gather_light_lanes.h"
 #include "wavefront/radiance_lanes.h"
 #include "wavefront/suffixes_lanes.h"
-#include "wavefront/tile_light_points_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -11,17 +11,16 @@ CASTRAY_INLINE Vec broadcast_entry(const VecArray<N>& a, int i) {
   return {Float(a.x[i]), Float(a.y[i]), Float(a.z[i])};
 }
 
-/// The BSDF of a glossy suffix, the same in all lanes, and its frame.
+/// The BSDF of a glossy suffix, the same in all lanes, and its shading frame.
 struct GlossySuffix {
   Bsdf bsdf;
   Frame frame;
-  Vec normal;
 };
 
 template <uint32_t features>
-CASTRAY_INLINE GlossySuffix glossy_suffix(const KernelScene& scene, const Suffixes& suffixes, int i) {
-  return {gather_bsdf(scene, Uint(suffixes.material[i]), broadcast_entry<features>(suffixes.parameters, i)),
-          make_frame(broadcast_entry(suffixes.shading_normal, i)), broadcast_entry(suffixes.normal, i)};
+CASTRAY_INLINE GlossySuffix glossy_suffix(const KernelScene& scene, const Vertices& y, int k) {
+  return {gather_bsdf(scene, Uint(y.material[k]), broadcast_entry<features>(y.parameters, k)),
+          make_frame(broadcast_entry(y.shading_normal, k))};
 }
 
 /// Adds what a glossy suffix sends to each pixel: `lit` over the density, reflected from its light point;
@@ -31,8 +30,9 @@ template <uint32_t features>
 CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixes, int suffix,
                                const Gatherers& tile, const Transfer& t, const Vec& lit, const Vec& arriving,
                                const Vec& emission, Gathered& gathered) {
-  const GlossySuffix y = glossy_suffix<features>(scene, suffixes, suffix);
-  const Vec p = broadcast_entry(suffixes.p, suffix);
+  const int entry = (int)suffixes.landed[suffix] - 1;
+  const GlossySuffix y = glossy_suffix<features>(scene, suffixes.y, entry);
+  const Vec p = broadcast_entry(suffixes.y.p, entry);
   const Vec to_light = to_local(y.frame, broadcast_entry(suffixes.to_light, suffix));
   const Vec onward = to_local(y.frame, broadcast_entry(suffixes.onward, suffix));
   Float density[tile_vectors];
@@ -55,10 +55,10 @@ CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixe
 
 /// Every pixel gathers from every suffix of its tile. A suffix that escaped serves the pixel it came from
 /// alone.
-template <uint32_t features>
-CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const TileBoxes* boxes,
-                                    const FarEnds& ends, const Suffixes& suffixes, const Radiance& radiance,
-                                    VisibilityScratch& s, Gathered& gathered) {
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxes* boxes,
+                                   const Suffixes& suffixes, const Radiance& radiance, VisibilityScratch& s,
+                                   Gathered& gathered) {
   const float stratum = stratum_of(c.options);
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
@@ -74,18 +74,19 @@ CASTRAY_INLINE void gather_suffixes(Context& c, const Vertices& x, const TileBox
         gathered.sum.z[origin] += radiance.z[slot] * (weighted ? suffixes.weight.z[suffix] : stratum);
         continue;
       }
-      const bool glossy = (features & feature_materials) && suffixes.glossy[suffix];
-      const Vec emitted = broadcast_entry(suffixes.emission, suffix);
+      const int entry = (int)suffixes.landed[suffix] - 1;
+      const bool glossy = (features & feature_materials) && suffixes.glossy[entry];
+      const Vec emitted = broadcast_entry(suffixes.emission, entry);
       const Vec lit = glossy ? radiance.at(slot + batch_size) : black();
       if (all(max_component(reflected + emitted + lit) <= Float(0.f))) continue;
       Transfer t;
-      transfer<features>(c,
-                         {broadcast_entry(suffixes.p, suffix), broadcast_entry(suffixes.normal, suffix),
-                          origin - gatherers.first},
-                         gatherers, ends, s, t);
+      transfer<Geometry, features>(c,
+                                   {broadcast_entry(suffixes.y.p, entry),
+                                    broadcast_entry(suffixes.y.normal, entry), origin - gatherers.first},
+                                   gatherers, s, t);
       const float density = ordered_sum(t.density) / stratum;
       if (!(density > 0)) continue;
-      const Vec emission = emitted * Float(1.f / (density + suffixes.light_density[suffix]));
+      const Vec emission = emitted * Float(1.f / (density + suffixes.light_density[entry]));
       if constexpr (features & feature_materials) {
         if (glossy) {
           add_glossy<features>(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),

@@ -1,53 +1,27 @@
 #pragma once
 
 #include "wavefront/light_lanes.h"
+#include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/suffixes_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
-/// Takes the vertices with a glossy lobe out of `y` into `out`.
-template <uint32_t features>
-CASTRAY_INLINE void split_glossy(const KernelScene& scene, Vertices& y, Vertices& out) {
-  int kept = 0;
-  out.count = 0;
-  for (int i = 0; i < y.count; i += width) {
-    const Mask active = first_lanes(y.count - i);
-    const Uint record = select(active, load(y.material + i) & 0x7fffffffu, Uint(0u));
-    const Mask glossy = active & has_traits(scene, record, trait_directional | trait_shareable);
-    compress_vertices<features>(out, out.count, glossy, y, i);
-    compress_vertices<features>(y, kept, active & ~glossy, y, i);
-    out.count += count(glossy);
-    kept += count(active & ~glossy);
-  }
-  y.count = kept;
-}
-
-/// Keeps the lanes of v, which belong to the vertices from i on, with their suffixes.
-CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y, int i, const Vec& v) {
-  for (int l = 0; l < width && i + l < y.count; ++l) {
-    const uint32_t suffix = y.names.slot[i + l] - batch_size;
-    to.x[suffix] = lane(v.x, l);
-    to.y[suffix] = lane(v.y, l);
-    to.z[suffix] = lane(v.z, l);
-  }
-}
-
 /// One light point for each glossy suffix, without what the suffix makes of it.
-template <uint32_t features>
-CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& out) {
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& out) {
   out.count = 0;
   const LightList& lights = c.scene.lights;
   if (lights.count == 0) return;
   for (int i = 0; i < y.count; i += width) {
     const Mask active = first_lanes(y.count - i);
-    const LightPoint point = vertex_light_point<features>(c, y, i, 1);
+    const LightPoint point = vertex_light_points(c, y, i, 1, false);
     const Vec p = load(y.p, i), normal = load(y.normal, i);
     const LightSegment segment = connect_light(point, p);
     const Vec wi = segment.towards * segment.inverse_distance;
     const Mask lit = active & (segment.solid_angle > Float(0.f)) & (dot(normal, wi) > Float(0.f)) &
                      (dot(load(y.shading_normal, i), wi) > Float(0.f));
     const int n = out.count;
-    const Segment traced = to_trace<features>(lights, segment, p, normal);
+    const Segment traced = to_trace(Geometry(c.scene.geometry), lights, segment, p, normal);
     compress_store(out.o, n, lit, traced.o);
     compress_store(out.d, n, lit, traced.d);
     compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);
@@ -59,7 +33,7 @@ CASTRAY_INLINE void light_glossy(const Context& c, const Vertices& y, Suffixes& 
 
 /// The next segment of each glossy suffix, chosen as the suffix's own pixel would.
 template <uint32_t features>
-CASTRAY_INLINE void scatter_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, Paths& out) {
+CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, Paths& out) {
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   out.count = 0;
   for (int i = 0; i < y.count; i += width) {
@@ -77,7 +51,7 @@ CASTRAY_INLINE void scatter_glossy(const Context& c, const Vertices& y, Suffixes
     compress_store(out.throughput, k, going, one);
     compress_store(out.arrival + k, going, Float(0.f));
     compress_store(out.eta2 + k, going, Float(1.f));
-    compress_names(out.names, k, going, y.names, i);
+    compress_entries(out.names, k, going, y.names, i);
     compress_store(out.names.light_u + k, going, n.u[2]);
     compress_store(out.names.light_v + k, going, n.u[3]);
     out.count += count(going);

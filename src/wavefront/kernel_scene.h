@@ -7,7 +7,7 @@
 #include "castray/scene.h"
 #include "geometry/facets.h"
 #include "geometry/wide_bvh.h"
-#include "lights/light_tree.h"
+#include "lights/light_table.h"
 #include "materials/kernel_materials.h"
 #include "render/plan.h"
 #include "wavefront/kernel_api.h"
@@ -25,12 +25,8 @@ struct KernelSceneData {
   std::optional<WideBvh> bvh;                 ///< of a tree
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   KernelMaterials materials;
-  std::vector<KernelLight> lights;
-  LightTree light_tree;  ///< where lights are chosen by importance
+  LightTable lights;
   KernelScene view{};
-
- private:
-  void add_lights(const Scene& scene, const Plan& plan, int threads);
 };
 
 }  // namespace castray

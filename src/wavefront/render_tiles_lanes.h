@@ -1,19 +1,18 @@
 #pragma once
 
 #include "wavefront/camera_rays_lanes.h"
-#include "wavefront/first_hits_lanes.h"
 #include "wavefront/share_lanes.h"
 
 // A job from camera rays to radiance: every pixel by itself, or the pixels of each tile together.
 
 namespace castray::CASTRAY_ISA {
 
-template <uint32_t features>
+template <class Geometry, uint32_t features>
 CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
                                  void* scratch, TileResult& result) {
   Scratch& s = *static_cast<Scratch*>(scratch);
-  Context c{scene, options, job};
-  fill(s.ends);
+  Context c{scene, options, job, s.ends};
+  s.ends.fill();
   s.radiance.clear();
   place_pixels(c, result);
   camera_rays(c, result, s.paths);
@@ -21,14 +20,14 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   if (first.known)
     recall_first_hits(first, result, s.paths.count, s.hits);
   else
-    closest<features>(c, s.paths, s.ends, true, s.hits);
+    closest<Geometry>(c, s.paths, true, s.hits);
   if (first.t && !first.known) return keep_first_hits(first, result, s.paths.count, s.hits);
-  surfaces<features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
+  surfaces<Geometry, features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
   keep_direct(c, s);
   if (options.suffixes > 0 && may_have_edges(options, 2))
-    share<features>(c, s);
+    share<Geometry, features>(c, s);
   else
-    follow<features>(c, s, s.camera, 0, first_roulette);
+    follow<Geometry, features>(c, s, s.camera, 0, first_roulette);
   clamp_indirect(c, s);
   for (int i = 0; i < job.tiles * tile_pixels; ++i) {
     result.radiance[0][i] = s.radiance.x[i];

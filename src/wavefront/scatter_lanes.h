@@ -18,8 +18,8 @@ CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uin
 
 /// The next ray of each path that survives the roulette.
 template <uint32_t features>
-CASTRAY_INLINE void scatter(const Context& c, const Vertices& vertices, uint32_t vertex,
-                            uint32_t first_roulette, Paths& out) {
+CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t vertex,
+                           uint32_t first_roulette, Paths& out) {
   out.count = 0;
   const bool roulette = c.options.fixed_roulette || vertex >= first_roulette;
   for (int i = 0; i < vertices.count; i += width) {
@@ -58,7 +58,7 @@ CASTRAY_INLINE void scatter(const Context& c, const Vertices& vertices, uint32_t
     compress_store(out.throughput, k, alive, throughput);
     compress_store(out.arrival + k, alive, arrival);
     compress_store(out.eta2 + k, alive, eta2);
-    compress_names(out.names, k, alive, vertices.names, i);
+    compress_entries(out.names, k, alive, vertices.names, i);
     compress_store(out.names.light_u + k, alive, n.u[2]);
     compress_store(out.names.light_v + k, alive, n.u[3]);
     out.count += count(alive);

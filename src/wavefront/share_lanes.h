@@ -2,6 +2,7 @@
 
 #include "wavefront/follow_lanes.h"
 #include "wavefront/glossy_suffixes_lanes.h"
+#include "wavefront/start_suffixes_lanes.h"
 
 // Paths shared by the pixels of a tile (after Bekaert, Sbert and Halton 2002).
 //
@@ -17,56 +18,43 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Takes the vertices that cannot share, whose materials are not shareable, out of `camera` into `out`.
-template <uint32_t features>
-CASTRAY_INLINE void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out) {
-  out.count = 0;
-  for (int i = 0; i < camera.count; i += width) {
-    const Uint record = load(camera.material + i) & 0x7fffffffu;
-    const Vec normal = load(camera.normal, i);
-    const Mask alone = first_lanes(camera.count - i) & (length_squared(normal) > Float(0.f)) &
-                       ~has_traits(scene, record, trait_shareable);
-    if (none(alone)) continue;
-    compress_vertices<features>(out, out.count, alone, camera, i);
-    out.count += count(alone);
-    store(camera.normal, i, select(alone, black(), normal));
-    store_kd(camera.parameters, i, select(alone, black(), load_kd(camera.parameters, i)));
-  }
-}
-
 /// Follows the glossy suffixes with the unit weight that leaves what they reflect to each pixel.
-template <uint32_t features>
-CASTRAY_INLINE void follow_glossy(Context& c, Scratch& s) {
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   if (s.glossy.count == 0 || !may_have_edges(c.options, 3)) return;
-  light_glossy<features>(c, s.glossy, s.suffixes, s.shadow_rays);
-  add_unblocked<features>(c, s.ends, s.shadow_rays, s.radiance);
+  light_glossy<Geometry, features>(c, s.glossy, s.suffixes, s.shadow_rays);
+  add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
   scatter_glossy<features>(c, s.glossy, s.suffixes, s.paths);
-  closest<features>(c, s.paths, s.ends, false, s.hits);
-  surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
-  follow<features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
+  closest<Geometry>(c, s.paths, false, s.hits);
+  surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+  follow<Geometry, features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
 }
 
 /// The light that the camera's vertices reflect, gathered tile by tile.
-template <uint32_t features>
-CASTRAY_INLINE void share(Context& c, Scratch& s) {
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void share(Context& c, Scratch& s) {
   const int n = c.job.tiles * tile_pixels;
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   if constexpr (features & feature_materials) {
-    split_unshareable<features>(c.scene, s.camera, s.vertices);
-    if (s.vertices.count > 0) follow<features>(c, s, s.vertices, 0, first_roulette);
+    split_unshareable(c.scene, s.camera, s.vertices);
+    if (s.vertices.count > 0) follow<Geometry, features>(c, s, s.vertices, 0, first_roulette);
   }
   for (int tile = 0; tile < c.job.tiles; ++tile)
-    bound_tile(s.camera, tile * tile_pixels, features & feature_bvh, s.boxes[tile]);
-  gather_light<features>(c, s.camera, s.boxes, s.ends, s.visibility, s.gathered);
+    bound_tile(s.camera, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
+  gather_light<Geometry, features>(c, s.camera, s.boxes, s.visibility, s.gathered);
   add_gathered_to_direct<features>(c, s);
   start_suffixes<features>(c, s.camera, s.suffixes, s.paths);
-  closest<features>(c, s.paths, s.ends, false, s.hits);
-  surfaces<features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
-  keep_suffixes<features>(c, s.vertices, s.suffixes);
-  if constexpr (features & feature_materials) split_glossy<features>(c.scene, s.vertices, s.glossy);
-  follow<features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
-  if constexpr (features & feature_materials) follow_glossy<features>(c, s);
-  gather_suffixes<features>(c, s.camera, s.boxes, s.ends, s.suffixes, s.radiance, s.visibility, s.gathered);
+  closest<Geometry>(c, s.paths, false, s.hits);
+  surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.suffixes.y, s.radiance);
+  keep_suffix_ends(c, features & feature_detail, s.suffixes);
+  if constexpr (features & feature_materials) {
+    split_suffixes(c.scene, s.suffixes, s.glossy, s.vertices);
+    follow<Geometry, features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
+    follow_glossy<Geometry, features>(c, s);
+  } else {
+    follow<Geometry, features>(c, s, s.suffixes.y, 1, first_roulette_of_suffixes);
+  }
+  gather_suffixes<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.radiance, s.visibility, s.gathered);
   for (int i = 0; i < n; i += width) store(s.radiance, i, load(s.radiance, i) + reflected<features>(s, i));
 }
 

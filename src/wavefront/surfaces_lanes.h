@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/hit_point_lanes.h"
+#include "lights/lights_lanes.h"
 #include "materials/surface_values_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/radiance_lanes.h"
@@ -8,30 +8,40 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// What the side that shines emits.
+/// The MIS weight (balance heuristic) of light that BSDF sampling found, of pdf `arrival`, and light sampling
+/// finds with pdf `light_pdf`, both per solid angle; see Paths::arrival.
+CASTRAY_INLINE Float found_weight(Float arrival, Float light_pdf) {
+  return select(arrival >= Float(counts_all), Float(1.f),
+                arrival / max(arrival + light_pdf, Float(0x1p-100f)));
+}
+
+/// The emission of surfaces seen at `distance` under `cosine`, times its MIS weight.
 template <uint32_t features>
-CASTRAY_INLINE Vec emission_of(const KernelScene& scene, Uint record, const Parameters<features>& p) {
-  if constexpr (features & feature_detail) return p.vec(slot_emission);
-  return gather_vec(scene.materials->value + slot_emission, record);
+CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, const Parameters<features>& p,
+                                  Mask front, Float arrival, Float distance, Float cosine) {
+  const FoundLight found = found_light(scene.materials, material, front);
+  Vec emission = found.emission;
+  if constexpr (features & feature_detail) emission = p.vec(slot_emission);
+  const Float weight = found_weight(arrival, found.density * distance * distance / abs(cosine));
+  return select(found.shines, emission * weight, black());
 }
 
-/// The part of a surface's own light that a ray counts (balance heuristic with light sampling).
-CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, Vec emission, Mask front,
-                                  Float arrival, Float distance, Float cosine) {
-  const KernelMaterial& first = *scene.materials;
-  const Mask shines = front | has_traits(scene, material, trait_emits_behind);
-  const Float light_pdf = gather(&first.light_density, material) * distance * distance / abs(cosine);
-  const Float share =
-      select(arrival >= Float(counts_all), Float(1.f), arrival / max(arrival + light_pdf, Float(0x1p-100f)));
-  return select(shines, emission * share, black());
+/// What rays that leave the scene find there, times its MIS weight.
+CASTRAY_INLINE Vec escaped_radiance(const LightList& lights, const Vec& d, Float arrival) {
+  const EscapedLight sky = escaped_light(lights, d);
+  const Mask sampled = sky.density > Float(0.f);
+  if (none(sampled)) return sky.radiance;
+  return select(sampled, sky.radiance * found_weight(arrival, sky.density), sky.radiance);
 }
 
-/// The surface at each hit. Paths that miss collect the environment and end. `see_emission`: some rays count
-/// it. With `keep_misses` every path keeps its place, and a miss is a black vertex without a normal.
-template <uint32_t features, bool keep_misses>
-CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
-                             Vertices& out, Radiance& radiance) {
+/// The path vertex at each hit. Paths that leave the scene collect its environment and end. `see_emission`:
+/// some rays count emission. With `keep_misses` every path keeps its place, and a miss is a black vertex with
+/// a normal of (0,0,0).
+template <class Geometry, uint32_t features, bool keep_misses>
+CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
+                            Vertices& out, Radiance& radiance) {
   const KernelScene& scene = c.scene;
+  const Geometry geometry(scene.geometry);
   out.count = 0;
   for (int i = 0; i < paths.count; i += width) {
     const Mask active = first_lanes(paths.count - i);
@@ -39,29 +49,29 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
     const Mask hit = active & ~(found == Uint(no_hit));
     const Uint primitive = select(hit, found, Uint(0u));
     const Vec o = load(paths.o, i), d = load(paths.d, i), throughput = load(paths.throughput, i);
-    const HitPoint x = hit_point<features>(scene, o, d, hits, i, primitive);
+    const Float t = load(hits.t + i), b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
+    const SurfacePoint x = geometry.surface_point(o, d, {t, b1, b2, primitive});
+    const Uint material = x.material * uint32_t{material_floats};
     const Float towards = dot(x.normal, d);
     const Mask front = towards < Float(0.f);
     const Vec facing = select(front, x.normal, -x.normal);
-    Parameters<features> parameters = gather_parameters<features>(scene, x.material);
+    Parameters<features> parameters = gather_parameters<features>(scene, material);
     if constexpr (features & feature_detail)
-      resolve_values(scene, x.material, {primitive, load(hits.b1 + i), load(hits.b2 + i)}, parameters.value);
+      resolve_values(scene, material, {primitive, b1, b2}, parameters.value);
+    const Float arrival = load(paths.arrival + i);
     if (see_emission) {
-      const Float arrival = load(paths.arrival + i);
-      const Vec emission = found_emission(scene, x.material, emission_of(scene, x.material, parameters),
-                                          front, arrival, load(hits.t + i), towards);
+      const Vec emission = found_emission(scene, material, parameters, front, arrival, t, towards);
       radiance.add(paths.names.slot + i, hit & (arrival > Float(0.f)), throughput * emission);
     }
-    radiance.add(paths.names.slot + i, active & ~hit, throughput * broadcast(scene.environment));
+    radiance.add(paths.names.slot + i, active & ~hit,
+                 throughput * escaped_radiance(scene.lights, d, arrival));
     const Mask kept = keep_misses ? active : hit;
     const int n = out.count;
     if constexpr (features & feature_materials) {
       const Vec to_viewer = -normalize(d);
       Vec shading_normal = facing;
-      if constexpr (features & feature_detail) {
-        const Float b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
-        shading_normal = smooth_normal(scene.triangles, primitive, b1, b2, facing, to_viewer);
-      }
+      if constexpr (features & feature_detail)
+        shading_normal = smooth_normal(scene.geometry.tree.triangles, primitive, b1, b2, facing, to_viewer);
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);
       compress_store(out.error + n, kept, x.error);
@@ -74,8 +84,8 @@ CASTRAY_INLINE void surfaces(const Context& c, const Paths& paths, const Hits& h
       for (Float& v : parameters.value) v = select(hit, v, Float(0.f));
     compress_store(out.parameters, n, kept, parameters);
     compress_store(out.throughput, n, kept, or_black(throughput));
-    compress_store(out.material + n, kept, x.material | select(front, Uint(0x80000000u), Uint(0u)));
-    compress_names(out.names, n, kept, paths.names, i);
+    compress_store(out.material + n, kept, material | select(front, Uint(seen_from_front), Uint(0u)));
+    compress_entries(out.names, n, kept, paths.names, i);
     out.count += count(kept);
   }
 }

@@ -1,3 +1,4 @@
+#include "geometry/tree_geometry_lanes.h"
 #include "wavefront/render_tiles_lanes.h"
 #include "wavefront/tiles_lanes.h"
 
@@ -5,7 +6,7 @@ namespace castray::CASTRAY_ISA {
 
 void render_tiles_bvh(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
                       void* scratch, TileResult& result) {
-  render_tiles<feature_bvh | feature_materials>(scene, options, job, scratch, result);
+  render_tiles<TreeGeometry, feature_materials>(scene, options, job, scratch, result);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -35,7 +35,7 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
     if constexpr (features & feature_materials) {
       t.weight[i] = load_kd(tile.x.parameters, entry) * t.density[i];
       const Mask directional =
-          has_traits(c.scene, load(tile.x.material + entry) & 0x7fffffffu, trait_directional) &
+          has_traits(c.scene, record_of(load(tile.x.material + entry)), trait_directional) &
           (length_squared(normal) > Float(0.f));
       bool other = any(directional);
       if constexpr (features & feature_detail) other = true;

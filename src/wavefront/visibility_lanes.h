@@ -1,6 +1,5 @@
 #pragma once
 
-#include "geometry/hit_point_lanes.h"
 #include "wavefront/transfer_lanes.h"
 
 namespace castray::CASTRAY_ISA {
@@ -20,8 +19,10 @@ CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
 }
 
 /// Takes out what is hidden from the sender, by a ray for each pixel.
-CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, const FarEnds& ends,
-                                 VisibilityScratch& s, bool weights, Transfer& t) {
+template <class Geometry>
+CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, VisibilityScratch& s,
+                                 bool weights, Transfer& t) {
+  const Geometry geometry(c.scene.geometry);
   int n = 0;
   for (int i = 0; i < tile_vectors; ++i) {
     const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
@@ -29,11 +30,11 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& t
     compress_store(s.o, n, open, y.p);
     const int entry = tile.first + i * width;
     compress_store(s.d, n, open,
-                   far_end<feature_bvh>(load(tile.x.p, entry), load(tile.x.normal, entry), y.p) - y.p);
+                   geometry.far_end(load(tile.x.p, entry), load(tile.x.normal, entry), y.p) - y.p);
     compress_store(s.pixel + n, open, pixel);
     n += count(open);
   }
-  bvh_occluded(c.scene.bvh, {s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, ends.one, s.blocked, (uint32_t)n});
+  geometry.occluded({s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, c.ends.one, s.blocked, (uint32_t)n});
   uint64_t hidden = 0;
   for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
   for (int i = 0; i < tile_vectors; ++i)
@@ -44,19 +45,15 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& t
 inline constexpr int few_pyramids = 16;
 
 /// Takes out what is hidden from the sender.
-template <uint32_t features>
-CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, const FarEnds& ends,
-                                 VisibilityScratch& s, Transfer& t) {
+template <class Geometry, uint32_t features>
+CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, VisibilityScratch& s,
+                                 Transfer& t) {
   constexpr bool weights = features & feature_materials;
-  constexpr int corners = (features & feature_bvh) ? 3 : 4;
-  if constexpr (features & feature_bvh) {
-    if (!make_shaft(c.scene.bvh, y.p, tile.boxes.all, tile.budget, s.shaft))
-      return hide_by_rays(c, y, tile, ends, s, weights, t);
-  } else {
-    make_shaft(c.scene.blocker_fields, y.p, tile.boxes.all, s.shaft);
-  }
+  constexpr int corners = Geometry::blocker_corners;
+  if (!Geometry(c.scene.geometry).make_shaft(y.p, tile.boxes.all, tile.budget, s.shaft))
+    return hide_by_rays<Geometry>(c, y, tile, s, weights, t);
   if (s.shaft.count == 0) return;
-  const bool choose = (features & feature_bvh) && s.shaft.count > few_pyramids;
+  const bool choose = Geometry::has_many_blockers && s.shaft.count > few_pyramids;
   int pyramids = s.shaft.count;
   for (int i = 0; i < tile_vectors; ++i) {
     if (choose && i % part_vectors == 0) {
@@ -77,11 +74,10 @@ CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, c
   }
 }
 
-template <uint32_t features>
-CASTRAY_INLINE void transfer(Context& c, const Sender& y, Gatherers& tile, const FarEnds& ends,
-                             VisibilityScratch& s, Transfer& t) {
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void transfer(Context& c, const Sender& y, Gatherers& tile, VisibilityScratch& s, Transfer& t) {
   unoccluded_transfer<features>(c, y, tile, t);
-  hide_blocked<features>(c, y, tile, ends, s, t);
+  hide_blocked<Geometry, features>(c, y, tile, s, t);
   c.rays += tile_pixels;
 }
 

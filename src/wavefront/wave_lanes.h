@@ -1,6 +1,8 @@
 #pragma once
 
+#include "geometry/ray_batches.h"
 #include "materials/parameters_lanes.h"
+#include "simd/array_rows_lanes.h"
 #include "simd/random_lanes.h"
 #include "simd/vec_lanes.h"
 #include "wavefront/kernel_api.h"
@@ -17,24 +19,16 @@ using FloatArray = float[capacity];
 
 using UintArray = uint32_t[capacity];
 
-/// Who a path is: where its radiance is added, which random numbers it draws, and where on a light its next
-/// vertex looks.
+/// Of each path: the slot its radiance is added to, its random numbers' key and index, and where on a light
+/// the light point of its next vertex lies.
 struct PathNames {
+  static constexpr int size = capacity;
   alignas(64) UintArray slot, key, index;
   alignas(64) FloatArray light_u, light_v;
 };
 
 CASTRAY_INLINE Sequence sequence_of(const PathNames& names, int i) {
   return {load(names.key + i), load(names.index + i)};
-}
-
-/// Copies the names of entries i to i + width - 1 of `from`, those of `m`, to the entries of `to` from n on.
-CASTRAY_INLINE void compress_names(PathNames& to, int n, Mask m, const PathNames& from, int i) {
-  compress_store(to.slot + n, m, load(from.slot + i));
-  compress_store(to.key + n, m, load(from.key + i));
-  compress_store(to.index + n, m, load(from.index + i));
-  compress_store(to.light_u + n, m, load(from.light_u + i));
-  compress_store(to.light_v + n, m, load(from.light_v + i));
 }
 
 /// How much of the emission that a ray finds it counts: all; or, where light sampling looks for it too, the
@@ -50,39 +44,46 @@ struct Paths {
   PathNames names;
 };
 
+/// Greatest ray parameters: of rays, and of segments.
+struct FarEnds {
+  alignas(64) FloatArray infinite, one;
+
+  CASTRAY_INLINE void fill() {
+    for (int i = 0; i < capacity; ++i) {
+      infinite[i] = __builtin_inff();
+      one[i] = 1;
+    }
+  }
+};
+
 /// What closest-hit search found for each path: distance, facet or triangle, and barycentrics of the latter.
 struct Hits {
   alignas(64) FloatArray t, b1, b2;
   alignas(64) UintArray primitive;
 };
 
-/// Points on surfaces, ready to be lit and to scatter. `normal` is the geometric one on the side of the
-/// arriving ray; `p` is already moved to that side by `error`, the bound of its distance from the surface.
-struct Vertices {
-  int count = 0;
+inline constexpr uint32_t seen_from_front = 0x80000000u;
+
+/// Path vertices, ready to be lit and to scatter: arrays alone, so that entries are copied as a whole.
+/// `normal` is the geometric one, on wo's side, where `p` is offset to by `error`, the bound of its distance
+/// from the surface.
+struct VertexArrays {
+  static constexpr int size = capacity;
   VecArray<capacity> p, normal, throughput;
   ParameterArray<capacity> parameters;
-  alignas(64) UintArray material;  ///< offset of its record, in floats; the top bit: seen from the front
+  alignas(
+      64) UintArray material;  ///< offset of its record, in floats; and seen_from_front: wo is on that side
   PathNames names;
   // Only where there are other materials than diffuse ones:
   VecArray<capacity> wo, shading_normal;
-  alignas(64) FloatArray error, eta2;
+  alignas(64) FloatArray error, eta2;  ///< eta2 as in Paths
+};
+struct Vertices : VertexArrays {
+  int count = 0;
 };
 
-/// Copies the vertices i to i + width - 1 of `from`, those of `m`, to the entries of `to` from n on.
-template <uint32_t features>
-CASTRAY_INLINE void compress_vertices(Vertices& to, int n, Mask m, const Vertices& from, int i) {
-  compress_store(to.p, n, m, load(from.p, i));
-  compress_store(to.normal, n, m, load(from.normal, i));
-  compress_store(to.parameters, n, m, load<features>(from.parameters, i));
-  compress_store(to.throughput, n, m, load(from.throughput, i));
-  compress_store(to.material + n, m, load(from.material + i));
-  compress_names(to.names, n, m, from.names, i);
-  compress_store(to.wo, n, m, load(from.wo, i));
-  compress_store(to.shading_normal, n, m, load(from.shading_normal, i));
-  compress_store(to.error + n, m, load(from.error + i));
-  compress_store(to.eta2 + n, m, load(from.eta2 + i));
-}
+/// The offset of its record, of VertexArrays::material.
+CASTRAY_INLINE Uint record_of(Uint material) { return material & ~seen_from_front; }
 
 /// Segments o + t d, 0 < t < 1, and the radiance that arrives if nothing is between.
 struct ShadowRays {

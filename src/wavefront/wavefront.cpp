@@ -13,6 +13,7 @@
 #include "core/sequences.h"
 #include "geometry/build_quality.h"
 #include "render/take_samples.h"
+#include "wavefront/choose_kernel.h"
 #include "wavefront/kernel_scene.h"
 
 namespace castray {

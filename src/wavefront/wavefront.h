@@ -5,10 +5,6 @@
 
 namespace castray {
 
-/// The instruction set `name` ("auto": the best that this processor has). Throws InputError if it is not to
-/// be had.
-const KernelApi& choose_kernel(const std::string& name);
-
 /// The fast integrator: the same expected image as castRay, by kernels that trace whole batches of paths.
 /// Options are taken as checked by `render`.
 RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,

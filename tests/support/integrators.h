@@ -5,7 +5,7 @@
 
 #include "castray/error.h"
 #include "castray/render.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/choose_kernel.h"
 
 namespace castray::test {
 

@@ -2,7 +2,7 @@
 
 #include "core/sequences.h"
 #include "test_scenes.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/choose_kernel.h"
 
 using namespace castray;
 using namespace castray::test;

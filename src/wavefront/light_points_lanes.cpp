@@ -1,22 +1,23 @@
-#pragma once
+#include "wavefront/light_points_lanes.h"
 
-#include "lights/area_lights_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
-#include "wavefront/visibility_lanes.h"
+#include "wavefront/shading_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
-/// The pixels of a tile that one suffix stands for.
-CASTRAY_INLINE float stratum_of(const KernelOptions& options) {
-  return (float)(tile_pixels / options.suffixes);
+LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i, uint32_t vertex,
+                               bool opaque) {
+  Numbers<4> n{{Float(0.f), Float(0.f), Float(0.f), Float(0.f)}};
+  if (c.scene.lights.count > 1)
+    n = draw<4>(c.options.sobol, sequence_of(vertices.names, i), choice_block(vertex));
+  Mask one_sided(true);
+  if (!opaque) one_sided = ~has_traits(c.scene, record_of(load(vertices.material + i)), trait_transmits);
+  const Receiver receiver = receiving_point(load(vertices.p, i), load(vertices.normal, i), one_sided);
+  return sample_light(c.scene.lights, receiver, n.u[2], n.u[3], load(vertices.names.light_u + i),
+                      load(vertices.names.light_v + i));
 }
 
-CASTRAY_INLINE Vec broadcast_lane(const Vec& v, int l) {
-  return {Float(lane(v.x, l)), Float(lane(v.y, l)), Float(lane(v.z, l))};
-}
-
-/// The points of a tile, none of which lets light through, as one receiver.
-CASTRAY_INLINE Receiver receiver_of(const Gatherers& tile) {
+Receiver receiver_of(const Gatherers& tile) {
   Float x[tile_vectors], y[tile_vectors], z[tile_vectors];
   for (int i = 0; i < tile_vectors; ++i) {
     const Vec normal = load(tile.x.normal, tile.first + i * width);
@@ -43,8 +44,7 @@ CASTRAY_INLINE Receiver receiver_of(const Gatherers& tile) {
           (Float(0.5f) < Float(cosine)) & (length_squared(sum) > Float(0.f))};
 }
 
-/// The light points of one tile, `count` <= width of them at once.
-CASTRAY_INLINE LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t key, int first) {
+LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t key, int first) {
   const auto points = (uint32_t)c.options.light_points;
   const Uint index = tile_index(key, c.job.sample, Uint((uint32_t)first) + lane_index(), points);
   const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, 0);
@@ -58,31 +58,6 @@ CASTRAY_INLINE LightPoint tile_light_points(const Context& c, const Receiver& ti
   point.density = point.density * Float((float)points) / sides;
   point.p = fma(point.normal, point.error, point.p);
   return point;
-}
-
-/// Light points shared by each tile.
-template <uint32_t features>
-CASTRAY_INLINE void gather_light(Context& c, const Vertices& x, const TileBoxes* boxes, const FarEnds& ends,
-                                 VisibilityScratch& s, Gathered& gathered) {
-  if (c.scene.lights.count == 0) return;
-  const int points = c.options.light_points;
-  for (int tile = 0; tile < c.job.tiles; ++tile) {
-    Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
-    const uint32_t key = tile_key(c, tile);
-    const Receiver receiver = receiver_of(gatherers);
-    for (int first = 0; first < points; first += width) {
-      const LightPoint point = tile_light_points(c, receiver, key, first);
-      for (int l = 0; l < width && first + l < points; ++l) {
-        Transfer t;
-        transfer<features>(c, {broadcast_lane(point.p, l), broadcast_lane(point.normal, l), -1}, gatherers,
-                           ends, s, t);
-        const float density = lane(point.density, l);
-        const float share =
-            c.options.mis ? density / (density + ordered_sum(t.density) / stratum_of(c.options)) : 1.f;
-        add_scaled<features>(gathered, gatherers.first, t, broadcast_lane(point.weight, l) * Float(share));
-      }
-    }
-  }
 }
 
 }  // namespace castray::CASTRAY_ISA

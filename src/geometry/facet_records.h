@@ -1,0 +1,48 @@
+#pragma once
+
+#include <stdint.h>
+
+// A flat list of facets as kernels read it: plain data, the same for every instruction set.
+
+namespace castray {
+
+/// A convex coplanar quad or a triangle of the flat list. Point p of its plane is inside where every
+/// edge . (p[u], p[v], 1) >= 0; edges are scaled so that this is a distance in the projection onto axes u and
+/// v.
+struct Facet {
+  float normal[3];  ///< unit; to the counter-clockwise side
+  float offset;     ///< normal . p of the plane's points
+  float edge[4][3];
+  float error;  ///< bound of the distance between a computed hit point and the exact facet
+  uint32_t material;
+  float corner[4][3];
+  uint32_t triangle[2];  ///< of the scene; equal for a triangle
+};
+inline constexpr int facet_floats = sizeof(Facet) / sizeof(float);
+
+/// The closest hit of one ray by a test that does not err at edges; facet 0xffffffff is a miss.
+struct ExactFacets {
+  const void* of;
+  void (*closest)(const void* of, const float origin[3], const float direction[3], float& t, uint32_t& facet);
+};
+
+/// Facets sorted by axis: those of axis a are facets[first[a]] to facets[first[a + 1] - 1].
+struct FacetList {
+  const Facet* facets;
+  uint32_t first[4];
+  ExactFacets exact;  ///< of the same facets; only for closest hits
+};
+
+/// The facets that can lie between two points of the scene, field by field, padded to a multiple of 16 with
+/// copies of the last one.
+struct BlockerList {
+  const float* corner[4][3];
+  const float* normal[3];
+  uint32_t count, padded;
+};
+
+/// Bound of the distance by which rounding moves a ray of unit direction that starts in the scene past a
+/// facet's edge, and of the product of that and a segment's length.
+inline constexpr float list_slack = 0x1p-20f, segment_slack = 4 * list_slack;
+
+}  // namespace castray

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "geometry/facet_records.h"
+#include "geometry/shaft_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// The blockers whose pyramid from y meets the box.
+void facet_shaft(const BlockerList& blockers, const Vec& y, const Box& box, Shaft& out);
+
+}  // namespace castray::CASTRAY_ISA

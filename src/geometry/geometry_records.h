@@ -1,0 +1,45 @@
+#pragma once
+
+#include <stdint.h>
+
+#include "geometry/facet_records.h"
+#include "geometry/wide_bvh_view.h"
+
+// A scene's geometry as kernels read it: plain data, the same for every instruction set.
+
+namespace castray {
+
+/// Triangles as the scene holds them; what a hit in the tree refers to.
+struct TriangleTable {
+  const float* positions;          ///< x, y, z of each vertex
+  const uint32_t* corners;         ///< three of each triangle
+  const uint32_t* materials;       ///< 16 bits a triangle, two in a word, the even one low
+  const float* normals;            ///< x, y, z
+  const uint32_t* normal_corners;  ///< three of each triangle, 0xffffffff: none; or null
+  const float* uvs;                ///< u, v
+  const uint32_t* uv_corners;      ///< likewise
+  const float* colors;             ///< red, green, blue
+  const uint32_t* color_corners;   ///< likewise
+};
+
+/// All of a scene as one flat list of facets.
+struct FlatList {
+  FacetList facets;
+  FacetList blockers;  ///< those that can lie between two points of the scene
+  BlockerList blocker_fields;
+  float camera_slack;  ///< list_slack for rays from the camera
+};
+
+/// All of a scene as a tree of triangles.
+struct TriangleTree {
+  WideBvhView bvh;
+  TriangleTable triangles;
+};
+
+/// One of them is filled in.
+struct SceneGeometry {
+  FlatList list;
+  TriangleTree tree;
+};
+
+}  // namespace castray

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "geometry/bvh_shaft_lanes.h"
+#include "geometry/triangle_table_lanes.h"
+#include "geometry/wide_bvh_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Geometry as a tree of triangles. For what the members mean see ListGeometry.
+class TreeGeometry {
+ public:
+  static constexpr int blocker_corners = 3;
+  static constexpr bool has_many_blockers = true;
+
+  CASTRAY_INLINE explicit TreeGeometry(const SceneGeometry& scene) : tree_(scene.tree) {}
+
+  CASTRAY_INLINE void closest(const RayBatch& rays, bool /*from_camera*/) const {
+    bvh_closest(tree_.bvh, rays);
+  }
+
+  CASTRAY_INLINE void occluded(const ShadowBatch& rays) const { bvh_occluded(tree_.bvh, rays); }
+
+  CASTRAY_INLINE SurfacePoint surface_point(const Vec& /*o*/, const Vec& /*d*/, const SurfaceHit& hit) const {
+    return triangle_point(tree_.triangles, hit);
+  }
+
+  /// Offset further by the error of a test from so far.
+  CASTRAY_INLINE Vec far_end(const Vec& p, const Vec& normal, const Vec& from) const {
+    return fma(normal, error_of_test(max_component(magnitude(p - from)), normal), p);
+  }
+
+  CASTRAY_INLINE bool make_shaft(const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out) const {
+    return triangle_shaft(tree_.bvh, y, box, budget, out);
+  }
+
+ private:
+  const TriangleTree& tree_;
+};
+
+}  // namespace castray::CASTRAY_ISA

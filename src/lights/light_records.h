@@ -1,0 +1,52 @@
+#pragma once
+
+#include <stdint.h>
+
+// Lights as kernels read them: plain data, the same for every instruction set.
+
+namespace castray {
+
+/// A parallelogram origin + a edge1 + b edge2, 0 <= a, b <= 1; or the triangle where a + b <= 1.
+struct KernelLight {
+  float origin[3];
+  float edge1[3], edge2[3];
+  float normal[3];  ///< unit; the side that emits
+  float emission[3];
+  float area;
+  uint32_t triangle;  ///< 1: a triangle
+  uint32_t two_sided;
+  float error;         ///< bound of the distance of a computed point from the exact light
+  float density;       ///< of a point on it by light sampling, per area; what shares between techniques use
+  float probability;   ///< of choosing this light by power
+  float cumulative;    ///< of the lights before this one
+  uint32_t rectangle;  ///< 1: its edges are perpendicular
+};
+inline constexpr int light_floats = sizeof(KernelLight) / sizeof(float);
+
+/// Bounds of lights: a sphere; a cone that holds the normals of emitting sides, by the cosine and sine of its
+/// half angle, 0 and 1 where that is above 90 degrees; and their power.
+struct LightBounds {
+  float center[3], radius;
+  float axis[3], cos_spread;
+  float sin_spread, power;
+  uint32_t next;  ///< the children's pair in the tree, or light_leaf + the light
+  uint32_t pad;
+};
+inline constexpr uint32_t light_leaf = 0x80000000u;
+
+/// Nodes of a tree that are looked at one by one, before a descent below the chosen one.
+inline constexpr int most_light_cut = 32;
+
+/// All lights of a scene.
+struct LightList {
+  const KernelLight* lights;
+  uint32_t count;
+  uint32_t cut_count;       ///< 0: lights are chosen by power, not by what they may bring to a point
+  const LightBounds* cut;   ///< nodes that hold all lights, each once
+  const LightBounds* tree;  ///< pairs of siblings
+  float environment[3];     ///< radiance from every direction that hits nothing
+  bool by_solid_angle;      ///< points are uniform in solid angle where that can be had
+  bool may_be_covered;      ///< something may lie too close in front of one to be seen from afar
+};
+
+}  // namespace castray

@@ -1,0 +1,70 @@
+#include "lights/light_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/put.h"
+
+namespace castray {
+
+namespace {
+
+KernelLight facet_light(const Facet& f, const Material& material) {
+  KernelLight light{};
+  const Vec3d a{f.corner[0][0], f.corner[0][1], f.corner[0][2]},
+      b{f.corner[1][0], f.corner[1][1], f.corner[1][2]};
+  const Vec3d d{f.corner[3][0], f.corner[3][1], f.corner[3][2]};
+  const Vec3d normal = cross(b - a, d - a);
+  put(light.origin, a);
+  put(light.edge1, b - a);
+  put(light.edge2, d - a);
+  put(light.normal, normalize(normal));
+  put(light.emission, material.ke);
+  light.area = static_cast<float>(length(normal));
+  light.two_sided = material.two_sided_emission;
+  light.rectangle = std::abs(dot(b - a, d - a)) <= 1e-6 * length(b - a) * length(d - a);
+  light.error = f.error;
+  return light;
+}
+
+KernelLight triangle_light(const Facet& f, int first, const Material& material) {
+  Facet triangle = f;  // corners first, first + 1, first + 2
+  std::copy_n(f.corner[first], 3, triangle.corner[0]);
+  std::copy_n(f.corner[(first + 1) % 4], 3, triangle.corner[1]);
+  std::copy_n(f.corner[(first + 2) % 4], 3, triangle.corner[3]);
+  KernelLight light = facet_light(triangle, material);
+  light.area /= 2;
+  light.triangle = 1;
+  light.rectangle = 0;
+  return light;
+}
+
+bool is_parallelogram(const Facet& f) {
+  double size = 0, gap = 0;
+  for (int c = 0; c < 3; ++c) {
+    size = std::max<double>(size, std::abs(f.corner[2][c] - f.corner[0][c]));
+    gap = std::max(gap, std::abs(double{f.corner[0][c]} + f.corner[2][c] - f.corner[1][c] - f.corner[3][c]));
+  }
+  return gap <= 1e-6 * size;
+}
+
+}  // namespace
+
+std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Scene& scene) {
+  std::vector<KernelLight> lights;
+  for (const Facet& f : facets) {
+    const Material& material = scene.materials[f.material];
+    if (!material.emits()) continue;
+    if (f.triangle[0] == f.triangle[1]) {
+      lights.push_back(triangle_light(f, 0, material));
+    } else if (is_parallelogram(f)) {
+      lights.push_back(facet_light(f, material));
+    } else {
+      lights.push_back(triangle_light(f, 0, material));
+      lights.push_back(triangle_light(f, 2, material));
+    }
+  }
+  return lights;
+}
+
+}  // namespace castray

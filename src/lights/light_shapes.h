@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "castray/scene.h"
+#include "geometry/facet_records.h"
+#include "lights/light_records.h"
+
+namespace castray {
+
+/// What light sampling places points on: the parallelograms and triangles of the facets that emit. Without
+/// their densities and probabilities.
+std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Scene& scene);
+
+}  // namespace castray

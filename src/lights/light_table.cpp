@@ -1,0 +1,67 @@
+#include "lights/light_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lights/light_shapes.h"
+
+namespace castray {
+
+namespace {
+
+/// A light's place along a Morton curve through [-1,1]^3, so that a stratified choice among lights is
+/// stratified in space.
+std::uint64_t place_on_curve(const KernelLight& l) {
+  std::uint64_t place = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double middle = l.origin[c] + (l.edge1[c] + l.edge2[c]) / (l.triangle ? 3.0 : 2.0);
+    const auto cell = static_cast<std::uint64_t>(std::clamp((middle + 1) * 0x1p19, 0.0, 0x1p20 - 1));
+    for (int bit = 0; bit < 20; ++bit) place |= ((cell >> bit) & 1u) << (3 * bit + c);
+  }
+  return place;
+}
+
+double radiance_of(const KernelLight& l) {
+  return luminance(Vec3d(l.emission[0], l.emission[1], l.emission[2])) * (l.two_sided ? 2 : 1);
+}
+
+/// Lights in an order that keeps neighbours together, with their probabilities by power. Returns the total
+/// power / pi.
+double sort_and_weigh(std::vector<KernelLight>& lights) {
+  std::stable_sort(lights.begin(), lights.end(),
+                   [](auto& a, auto& b) { return place_on_curve(a) < place_on_curve(b); });
+  double total = 0, sum = 0;
+  for (const KernelLight& l : lights) total += double{l.area} * radiance_of(l);
+  for (KernelLight& l : lights) {
+    l.cumulative = static_cast<float>(sum / total);
+    l.density = static_cast<float>(radiance_of(l) / total);
+    sum += double{l.area} * radiance_of(l);
+  }
+  for (std::size_t i = 0; i < lights.size(); ++i)  // what the search in the cumulative table really gives
+    lights[i].probability = (i + 1 < lights.size() ? lights[i + 1].cumulative : 1.f) - lights[i].cumulative;
+  return total;
+}
+
+}  // namespace
+
+LightTable::LightTable(const Scene& scene, const std::vector<Facet>& facets, bool by_importance, int threads)
+    : lights_(light_shapes(facets, scene)), power_(sort_and_weigh(lights_)) {
+  if (by_importance && lights_.size() > 1) tree_ = LightTree(lights_, threads);
+}
+
+LightList LightTable::list() const {
+  LightList list{};
+  list.lights = lights_.data();
+  list.count = static_cast<std::uint32_t>(lights_.size());
+  list.cut = tree_.cut().data();
+  list.cut_count = static_cast<std::uint32_t>(tree_.cut().size());
+  list.tree = tree_.pairs().data();
+  return list;
+}
+
+float LightTable::density(const Material& material) const {
+  if (!material.emits()) return 0;
+  return static_cast<float>(luminance(material.ke) * (material.two_sided_emission ? 2 : 1) / power_);
+}
+
+}  // namespace castray

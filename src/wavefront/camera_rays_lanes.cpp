@@ -1,0 +1,86 @@
+#include "wavefront/camera_rays_lanes.h"
+
+#include "cameras/pinhole_lanes.h"
+#include "wavefront/sequence_keys_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Mirrors coordinate `at` across the nearer edge of its tile, by chance: half of the pixels next to an edge,
+/// fewer and fewer further in. Both pixels of a pair do the same, so that each pixel is in one tile.
+CASTRAY_INLINE Uint swap_across_edge(uint32_t key, Uint at, Uint along) {
+  const Uint place = at & (tile_size - 1u), half(tile_size / 2u);
+  const Mask low = place < half;
+  const Uint steps = select(low, place, Uint(tile_size - 1u) - place);
+  const Uint edge = select(low, at - place, at - place + Uint(tile_size));
+  const Uint mirrored = select(low, edge - steps - 1u, edge + steps);
+  const Float chance = Float(0.5f) - (to_float(steps) + Float(0.5f)) * Float(1.f / tile_size);
+  const Uint dice = hash_combine(hash_combine(Uint(key), edge + steps), along);
+  return select(to_float(dice >> 8) * Float(0x1p-24f) < chance, mirrored, at);
+}
+
+void place_pixels(const Context& c, TileResult& result) {
+  const bool ragged = c.job.sample < c.options.ragged;
+  const uint32_t key = lane(hash_combine(Uint(c.options.seed ^ 0x3a99edu), Uint((uint32_t)c.job.sample)), 0);
+  const Uint left((uint32_t)(c.job.grid_x * tile_size)), top((uint32_t)(c.job.grid_y * tile_size));
+  for (int i = 0; i < c.job.tiles * tile_pixels; i += width) {
+    const Uint entry = Uint((uint32_t)i) + lane_index();
+    Uint x = left + ((entry >> 6) << 3) + (entry & 7u), y = top + ((entry >> 3) & 7u);
+    if (ragged) {
+      x = swap_across_edge(key, x, y);
+      y = swap_across_edge(key + 1, y, x);
+    }
+    store(result.x + i, x - left + Uint((uint32_t)c.job.x));
+    store(result.y + i, y - top + Uint((uint32_t)c.job.y));
+  }
+}
+
+void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
+  const KernelCamera& camera = c.scene.camera;
+  const uint32_t index = (uint32_t)c.job.sample & ((1u << index_bits) - 1);
+  paths.count = c.job.tiles * tile_pixels;
+  for (int i = 0; i < paths.count; i += width) {
+    const Uint entry = Uint((uint32_t)i) + lane_index();
+    const Uint x = load(pixels.x + i), y = load(pixels.y + i);
+    const Uint key = with_epoch(hash_combine(hash_combine(Uint(c.options.seed), x), y), c.job.sample);
+    const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, 0);
+    const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));
+    const Float py = to_float(y) + (c.options.jitter ? n.u[1] : Float(0.5f));
+    const CameraRay ray = camera_ray(camera, px, py);
+    store(paths.o, i, ray.o);
+    store(paths.d, i, ray.d);
+    store(paths.throughput, i, Vec{Float(1.f), Float(1.f), Float(1.f)});
+    store(paths.arrival + i, Float(counts_all));
+    store(paths.eta2 + i, Float(1.f));
+    store(paths.names.light_u + i, n.u[2]);
+    store(paths.names.light_v + i, n.u[3]);
+    store(paths.names.slot + i, entry);
+    store(paths.names.key + i, key);
+    store(paths.names.index + i, Uint(index));
+  }
+}
+
+void keep_first_hits(const FirstHits& table, const TileResult& pixels, int count, const Hits& hits) {
+  for (int i = 0; i < count; ++i) {
+    const int x = (int)pixels.x[i] - table.x0, y = (int)pixels.y[i] - table.y0;
+    if (x < 0 || x >= table.width || y < 0 || y >= table.height) continue;
+    const int at = y * table.width + x;
+    table.t[at] = hits.t[i];
+    table.b1[at] = hits.b1[i];
+    table.b2[at] = hits.b2[i];
+    table.primitive[at] = hits.primitive[i];
+  }
+}
+
+void recall_first_hits(const FirstHits& table, const TileResult& pixels, int count, Hits& hits) {
+  for (int i = 0; i < count; i += width) {
+    const Uint x = load(pixels.x + i) - Uint((uint32_t)table.x0),
+               y = load(pixels.y + i) - Uint((uint32_t)table.y0);
+    const Uint at = y * Uint((uint32_t)table.width) + x;
+    store(hits.t + i, gather(table.t, at));
+    store(hits.b1 + i, gather(table.b1, at));
+    store(hits.b2 + i, gather(table.b2, at));
+    store(hits.primitive + i, gather(table.primitive, at));
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

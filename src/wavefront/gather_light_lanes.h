@@ -1,0 +1,43 @@
+#pragma once
+
+#include "wavefront/light_points_lanes.h"
+#include "wavefront/sequence_keys_lanes.h"
+#include "wavefront/visibility_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// The pixels of a tile that one suffix stands for.
+CASTRAY_INLINE float stratum_of(const KernelOptions& options) {
+  return (float)(tile_pixels / options.suffixes);
+}
+
+CASTRAY_INLINE Vec broadcast_lane(const Vec& v, int l) {
+  return {Float(lane(v.x, l)), Float(lane(v.y, l)), Float(lane(v.z, l))};
+}
+
+/// Light points shared by each tile.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* boxes, VisibilityScratch& s,
+                                Gathered& gathered) {
+  if (c.scene.lights.count == 0) return;
+  const int points = c.options.light_points;
+  for (int tile = 0; tile < c.job.tiles; ++tile) {
+    Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
+    const uint32_t key = tile_key(c, tile);
+    const Receiver receiver = receiver_of(gatherers);
+    for (int first = 0; first < points; first += width) {
+      const LightPoint point = tile_light_points(c, receiver, key, first);
+      for (int l = 0; l < width && first + l < points; ++l) {
+        Transfer t;
+        transfer<Geometry, features>(c, {broadcast_lane(point.p, l), broadcast_lane(point.normal, l), -1},
+                                     gatherers, s, t);
+        const float density = lane(point.density, l);
+        const float share =
+            c.options.mis ? density / (density + ordered_sum(t.density) / stratum_of(c.options)) : 1.f;
+        add_scaled<features>(gathered, gatherers.first, t, broadcast_lane(point.weight, l) * Float(share));
+      }
+    }
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "wavefront/sequence_keys_lanes.h"
+#include "wavefront/shading_lanes.h"
+#include "wavefront/suffixes_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+template <int N>
+CASTRAY_INLINE Vec gather_entries(const VecArray<N>& a, Uint i) {
+  return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
+}
+
+/// One bounce from one pixel of each stratum.
+template <uint32_t features>
+CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes& suffixes, Paths& out) {
+  const auto per_tile = (uint32_t)c.options.suffixes;
+  const uint32_t stratum = tile_pixels / per_tile;
+  const int shift = __builtin_ctz(stratum);
+  const Vec one{Float(1.f), Float(1.f), Float(1.f)};
+  out.count = 0;
+  for (int tile = 0; tile < c.job.tiles; ++tile) {
+    const uint32_t key = tile_key(c, tile), choice_key = hash_once(key, (uint32_t)c.job.sample);
+    for (uint32_t j = 0; j < per_tile; j += width) {
+      const Uint item = Uint(j) + lane_index(), suffix = Uint((uint32_t)(tile * tile_pixels)) + item;
+      const Uint in_stratum = hash_combine(Uint(choice_key), item + 0x51u) & (stratum - 1);
+      const Mask there = item < Uint(per_tile);
+      const Uint entry =
+          Uint((uint32_t)(tile * tile_pixels)) + select(there, (item << shift) + in_stratum, Uint(0u));
+      const Uint index = tile_index(key, c.job.sample, item, per_tile);
+      const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, direction_block(0));
+      const Vec normal = gather_entries(x.normal, entry);
+      const Parameters<features> parameters = gather_entries<features>(x.parameters, entry);
+      Vec wi, weight = parameters.kd();
+      if constexpr (features & feature_materials) {
+        const Frame frame = make_frame(gather_entries(x.shading_normal, entry));
+        const Shading shading{gather_bsdf(c.scene, gather(x.material, entry), parameters), frame,
+                              to_local(frame, gather_entries(x.wo, entry)), normal};
+        const Numbers<2> choice = draw<2>(c.options.sobol, {Uint(key), index}, choice_block(0));
+        const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
+        wi = to_world(frame, s.wi);
+        weight = select(shading.consistent(wi, s.wi), s.weight, black());
+      } else {
+        wi = to_world(make_frame(normal), cosine_hemisphere(n.u[0], n.u[1]));
+      }
+      const Mask going =
+          there & (length_squared(normal) > Float(0.f)) & ~(max_component(weight) <= Float(0.f));
+      const int first = tile * tile_pixels + (int)j, k = out.count;
+      store(suffixes.origin + first, entry);
+      store(suffixes.landed + first, Uint(0u));
+      store(suffixes.weight, first, weight * Float((float)stratum));
+      compress_store(out.o, k, going, gather_entries(x.p, entry));
+      compress_store(out.d, k, going, wi);
+      compress_store(out.throughput, k, going, one);
+      compress_store(out.arrival + k, going, Float(0.f));
+      compress_store(out.eta2 + k, going, Float(1.f));
+      compress_store(out.names.slot + k, going, suffix + Uint((uint32_t)batch_size));
+      compress_store(out.names.key + k, going, Uint(key));
+      compress_store(out.names.index + k, going, index);
+      compress_store(out.names.light_u + k, going, n.u[2]);
+      compress_store(out.names.light_v + k, going, n.u[3]);
+      out.count += count(going);
+    }
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

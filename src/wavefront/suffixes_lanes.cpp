@@ -1,0 +1,67 @@
+#include "wavefront/suffixes_lanes.h"
+
+#include "lights/lights_lanes.h"
+#include "wavefront/shading_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes) {
+  const Vertices& y = suffixes.y;
+  for (int i = 0; i < y.count; i += width) {
+    const Uint material = load(y.material + i);
+    const Mask front = (material >> 31) == Uint(1u);
+    const FoundLight found = found_light(c.scene.materials, record_of(material), front);
+    const Float sides = select(found.both_sides, Float(2.f), Float(1.f));
+    store(suffixes.light_density + i, found.density * Float((float)c.options.light_points) / sides);
+    const Vec emission = emission_varies ? load_vec(y.parameters, slot_emission, i) : found.emission;
+    store(suffixes.emission, i, select(found.shines & Mask(c.options.mis), emission, black()));
+  }
+  for (int k = 0; k < y.count; ++k) suffixes.landed[y.names.slot[k] - batch_size] = (uint32_t)k + 1;
+}
+
+/// Makes vertex k, at the end of a suffix, a vertex of the path of the suffix's own pixel.
+CASTRAY_INLINE void make_private(const Suffixes& suffixes, Vertices& vertices, int k) {
+  const uint32_t suffix = vertices.names.slot[k] - batch_size;
+  vertices.names.slot[k] = suffixes.origin[suffix];
+  vertices.throughput.x[k] = suffixes.weight.x[suffix];
+  vertices.throughput.y[k] = suffixes.weight.y[suffix];
+  vertices.throughput.z[k] = suffixes.weight.z[suffix];
+}
+
+void split_suffixes(const KernelScene& scene, Suffixes& suffixes, Vertices& glossy, Vertices& others) {
+  const Vertices& y = suffixes.y;
+  glossy.count = others.count = 0;
+  for (int i = 0; i < y.count; i += width) {
+    const Mask active = first_lanes(y.count - i);
+    const Uint record = select(active, record_of(load(y.material + i)), Uint(0u));
+    const Mask shareable = has_traits(scene, record, trait_shareable);
+    const Mask rough = active & shareable & has_traits(scene, record, trait_directional);
+    store(suffixes.glossy + i, select(rough, Uint(1u), Uint(0u)));
+    compress_entries<VertexArrays>(glossy, glossy.count, rough, y, i);
+    glossy.count += count(rough);
+    compress_entries<VertexArrays>(others, others.count, active & ~rough, y, i);
+    alignas(64) uint32_t is_private[width];
+    compress_store(is_private, active & ~rough, select(shareable, Uint(0u), Uint(1u)));
+    const int n = count(active & ~rough);
+    for (int k = 0; k < n; ++k)
+      if (is_private[k]) make_private(suffixes, others, others.count + k);
+    others.count += n;
+  }
+}
+
+void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out) {
+  out.count = 0;
+  for (int i = 0; i < camera.count; i += width) {
+    const Uint record = record_of(load(camera.material + i));
+    const Vec normal = load(camera.normal, i);
+    const Mask alone = first_lanes(camera.count - i) & (length_squared(normal) > Float(0.f)) &
+                       ~has_traits(scene, record, trait_shareable);
+    if (none(alone)) continue;
+    compress_entries<VertexArrays>(out, out.count, alone, camera, i);
+    out.count += count(alone);
+    store(camera.normal, i, select(alone, black(), normal));
+    store_kd(camera.parameters, i, select(alone, black(), load_kd(camera.parameters, i)));
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

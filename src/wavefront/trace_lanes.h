@@ -1,0 +1,33 @@
+#pragma once
+
+#include "wavefront/context_lanes.h"
+#include "wavefront/radiance_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// The nearest hit of each path's ray.
+template <class Geometry>
+CASTRAY_INLINE void closest(Context& c, const Paths& paths, bool from_camera, Hits& hits) {
+  c.rays += (uint64_t)paths.count;
+  Geometry(c.scene.geometry)
+      .closest({paths.o.x, paths.o.y, paths.o.z, paths.d.x, paths.d.y, paths.d.z, c.ends.infinite, hits.t,
+                hits.primitive, hits.b1, hits.b2, (uint32_t)paths.count},
+               from_camera);
+}
+
+/// Adds the radiance of the segments that nothing blocks.
+template <class Geometry>
+CASTRAY_INLINE void add_unblocked(Context& c, ShadowRays& rays, Radiance& radiance) {
+  c.rays += (uint64_t)rays.count;
+  Geometry(c.scene.geometry)
+      .occluded({rays.o.x, rays.o.y, rays.o.z, rays.d.x, rays.d.y, rays.d.z, c.ends.one, rays.blocked,
+                 (uint32_t)rays.count});
+  for (int i = 0; i < rays.count; ++i) {
+    if (rays.blocked[i]) continue;
+    radiance.x[rays.slot[i]] += rays.radiance.x[i];
+    radiance.y[rays.slot[i]] += rays.radiance.y[i];
+    radiance.z[rays.slot[i]] += rays.radiance.z[i];
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA
