@@ -68,21 +68,51 @@ struct Noise {
       std::numeric_limits<double>::infinity();  ///< of the variance of 8x8 pixels; infinite: exact
 };
 
-/// What a file holds. PPM and PNG hold values in [0,1] under a tone curve that the file does not tell, all
-/// other formats hold linear radiance.
-struct ImageFile {
-  Image image;
-  bool encoded = false;             ///< `image` holds stored values in [0,1], not radiance
-  Metadata metadata;                ///< PNG, EXR and film
-  std::optional<Noise> noise = {};  ///< EXR, film with replicates, and PFM with a variance_file
+/// Pixels as a file stores them, top row first, the channels of a pixel side by side. Alpha, where there is
+/// any, is below 1 somewhere; it is multiplied into the colours in EXR only.
+struct Raster {
+  int width = 0, height = 0;
+  int channels = 3;      ///< 1: grey; 2: grey, alpha; 3: red, green, blue; 4: the same and alpha
+  bool encoded = false;  ///< values in [0,1] under a tone curve that the file does not tell; else linear
+  std::vector<unsigned char> bytes;  ///< files of 8 bits a value, which is byte/255
+  std::vector<float> floats;         ///< all other files; one of the two is empty
+
+  bool has_alpha() const { return channels % 2 == 0; }
+  float value(std::size_t i) const {
+    return bytes.empty() ? floats[i] : static_cast<float>(bytes[i]) / 255.f;
+  }
 };
 
-/// Reads .ppm (P3, P6), .png (8 and 16 bits), .pfm, .hdr, .exr (first part; half, float; scanlines, tiles) or
-/// .film; grey is widened to RGB, alpha is left out. Noise is that of a film's replicates (`noise_of`); in
-/// EXR the channels variance.R, variance.G, variance.B with the attribute varianceFreedom (double; none:
-/// infinite); of NAME.pfm the file NAME.variance.pfm beside it, if there, taken for exact. Throws InputError
-/// that says what is wrong with the file.
-ImageFile read_image(const std::filesystem::path& file);
+/// What a file holds. Formats of 8 or 16 bits a value hold values in [0,1] under a tone curve that the file
+/// does not tell, PFM, HDR, EXR and films hold linear radiance.
+struct ImageFile {
+  Image image;
+  bool encoded = false;                    ///< `image` holds stored values in [0,1], not radiance
+  Metadata metadata;                       ///< PNG, EXR and film
+  std::optional<Noise> noise = {};         ///< EXR, film with replicates, and PFM with a variance_file
+  std::vector<float> alpha = {};           ///< of each pixel, as Raster has it; empty: 1 everywhere
+  std::vector<std::string> left_out = {};  ///< what else an EXR file holds: layers, pixels outside its window
+};
+
+/// Reads .ppm and .pgm (text and binary), .png, .jpg, .tga, .bmp, .gif (its first frame), .psd (8 and 16 bits
+/// a value; as stb_image reads these five), .pfm, .hdr, .exr or .film. What a file is, its first bytes say,
+/// where they can; the suffix says it else. Grey is widened to RGB.
+///
+/// EXR: half, float or uint; scanlines or tiles; the display window, black where there are no data. `layer`
+/// names the layer to read: what stands before the last dot of its channels' names, or the part's name, or
+/// the name of a single channel. Empty: the channels without a layer's name of the first part, else the only
+/// layer with R, G and B, else the only channel. R, G, B; Y, RY, BY (half, first part; converted); X, Y, Z;
+/// or a single channel, as grey. A file whose only picture has no layer's name is read whatever `layer` is.
+///
+/// HDR: as its EXPOSURE and COLORCORR say, in any orientation.
+///
+/// Noise is that of a film's replicates (`noise_of`); in EXR the channels variance.R, variance.G, variance.B
+/// with the attribute varianceFreedom (float; none: infinite); of NAME.pfm the file NAME.variance.pfm beside
+/// it, if there, taken for exact. Throws InputError that says what is wrong with the file.
+ImageFile read_image(const std::filesystem::path& file, const std::string& layer = "");
+
+/// The same pixels, as the file stores them: for textures, which keep bytes as bytes.
+Raster read_raster(const std::filesystem::path& file);
 
 /// Linear radiance: what `file` holds, decoded by `tone` where it is encoded.
 Image decoded(const ImageFile& file, const ToneCurve& tone);
@@ -100,15 +130,19 @@ bool is_variance_file(const std::filesystem::path& file);
 /// The bytes of a PNG file.
 std::string encode_png(const Image& image, const Display& display = {}, const Metadata& metadata = {});
 
-/// Throws InputError if an image or film could not be written to `file`: an unknown suffix (the message lists
-/// the known ones), a missing folder, a write-protected target, ... To be asked before work starts.
+/// Throws InputError if an image or film could not be written to `file`: a suffix of no format that is
+/// written (the message lists those), a missing folder, a write-protected target, ... To be asked before work
+/// starts.
 void check_output_image(const std::filesystem::path& file);
 
 /// Whether the suffix is that of a format that can be read.
 bool is_image_format(const std::filesystem::path& file);
 
-/// Whether the suffix is that of a format of encoded values, .ppm or .png.
+/// Whether the suffix is that of a format of encoded values.
 bool is_encoded_format(const std::filesystem::path& file);
+
+/// Whether the suffix is that of a format whose files may hold several layers, .exr.
+bool has_layers(const std::filesystem::path& file);
 
 /// Whether the suffix is .film.
 bool is_film_format(const std::filesystem::path& file);

@@ -25,12 +25,15 @@ struct Compare {
   std::string allowance;
   std::optional<double> ztest;
   DisplayFlags flags;
+  std::string layer;
   fs::path limits_file, json, junit, html, heat_map_file;
 
   int run() const {
     const LimitsFile limits = all_limits();
-    flags.display();
     const bool folders = fs::is_directory(image);
+    flags.display();
+    if (!layer.empty() && !folders && !has_layers(image) && !has_layers(reference))
+      throw InputError("--layer: neither file has layers, which only .exr files have; leave it out");
     if (folders && !fs::exists(reference))
       throw InputError({reference.string()}, "does not exist; 'castray accept' makes references of images");
     if (folders != fs::is_directory(reference))
@@ -70,7 +73,7 @@ struct Compare {
 
   std::vector<Comparison> compare_one(const LimitsFile& limits) const {
     const std::string name = reference.filename().string();
-    Comparison comparison = compare_files(name, image, reference, limits.of(name), flags);
+    Comparison comparison = compare_files(name, image, reference, limits.of(name), flags, layer);
     if (!comparison.error.empty()) throw InputError(comparison.error);
     return {std::move(comparison)};
   }
@@ -85,7 +88,8 @@ struct Compare {
                                                      suggestion(name, {names.begin(), names.end()}));
     std::vector<Comparison> comparisons;
     for (const std::string& name : names) {
-      comparisons.push_back(compare_files(name, image / name, reference / name, limits.of(name), flags));
+      comparisons.push_back(
+          compare_files(name, image / name, reference / name, limits.of(name), flags, layer));
       fmt::print(stderr, "compared {} of {}: {}\n", comparisons.size(), names.size(), name);
     }
     return comparisons;
@@ -107,6 +111,7 @@ struct Compare {
     if (!allowance.empty()) text += " --allow-pixels " + shell_word(allowance);
     if (ztest) text += fmt::format(" --ztest {}", *ztest);
     if (!limits_file.empty()) text += " --limits " + shell_word(limits_file.string());
+    if (!layer.empty()) text += " --layer " + shell_word(layer);
     if (!flags.tone.empty()) text += " --tone " + shell_word(flags.tone);
     if (flags.exposure != 0) text += fmt::format(" --exposure {}", flags.exposure);
     return text;
@@ -118,11 +123,14 @@ struct Compare {
 Run add_compare(Arguments& arguments) {
   auto c = std::make_shared<Compare>();
   arguments
-      .add_positional("IMAGE", c->image, "a .ppm, .png, .pfm, .hdr, .exr or .film file, or a folder of them")
+      .add_positional(
+          "IMAGE", c->image,
+          "an image (.exr .pfm .hdr .film .png .ppm .jpg .tga .bmp .gif .psd) or a folder of them")
       .required();
   arguments.add_positional("REFERENCE", c->reference, "what it should look like").required();
-  arguments.add("--max", c->greatest, "METRIC=VALUE",
-                "a limit, repeatable: mse, rmse, relmse, mae, psnr, max_error, bias, ssim, flip, flip_hdr");
+  arguments.add(
+      "--max", c->greatest, "METRIC=VALUE",
+      "a limit, repeatable: mse, rmse, relmse, mae, psnr, max_error, bias, ssim, flip, flip_hdr, alpha");
   arguments.add("--min", c->least, "METRIC=VALUE",
                 "the same, from below: for psnr and ssim, which grow with likeness");
   arguments.add("--allow-pixels", c->allowance, "PERCENT:BOUND",
@@ -135,6 +143,7 @@ Run add_compare(Arguments& arguments) {
   arguments.add("--junit", c->junit, "FILE", "write the verdicts as JUnit XML");
   arguments.add("--html", c->html, "FILE", "write one web page to look at");
   arguments.add("--heatmap", c->heat_map_file, "FILE.png", "draw the error, on a fixed logarithmic scale");
+  arguments.add("--layer", c->layer, "NAME", layer_help);
   c->flags.add_to(arguments);
   arguments.footer("Exits with 0 within the limits, 1 if not, 2 if an image cannot be compared.");
   return [c] { return c->run(); };

@@ -33,6 +33,13 @@ const Check* check_of(const Comparison& c, const std::string& name) {
   return found == c.checks.end() ? nullptr : &*found;
 }
 
+/// A line each.
+std::string notes_of(const Comparison& c, const char* before) {
+  std::string text;
+  for (const std::string& note : c.notes) text += before + note + "\n";
+  return text;
+}
+
 std::string table(const Comparison& c) {
   std::string text =
       fmt::format("{} against {}, {}x{}, {}\n", c.image_file.string(), c.reference_file.string(),
@@ -47,6 +54,7 @@ std::string table(const Comparison& c) {
   for (const Check& check : c.checks)
     if (check.name == "allow-pixels" || check.name == "ztest")
       text += fmt::format("  {:<12}  {}: {}\n", check.name, check.pass ? "within" : "EXCEEDS", check.said);
+  text += notes_of(c, "  note: ");
   if (!c.checks.empty()) text += c.pass() ? "within the limits\n" : "NOT within the limits\n";
   return text;
 }
@@ -82,6 +90,7 @@ json to_json(const Comparison& c) {
                        {"t", c.noise->t},
                        {"means", {c.noise->mean, c.noise->mean_reference}},
                        {"pass", !c.noise->differs()}};
+  if (!c.notes.empty()) object["notes"] = c.notes;
   object["pass"] = c.pass();
   return object;
 }
@@ -121,7 +130,7 @@ std::string text_report(const std::vector<Comparison>& comparisons) {
     if (c.error.empty())
       text += fmt::format("  relmse {:.3g}, flip {:.3g}", c.errors.relmse, c.measures[8].value);
     const std::string why = complaint(c);
-    text += (why.empty() ? "" : "  " + why) + "\n";
+    text += (why.empty() ? "" : "  " + why) + "\n" + notes_of(c, "      note: ");
   }
   return text + fmt::format("{} of {} images pass\n", passed, comparisons.size());
 }

@@ -11,27 +11,67 @@ namespace castray::cli {
 
 namespace {
 
+struct Files {
+  ImageFile image, reference;
+};
+
 /// Encoded files stay as they are, since what they clipped is lost: against them radiance is encoded too.
-void load(Comparison& c, const DisplayFlags& flags) {
-  c.display = flags.display();
-  ImageFile image = read_image(c.image_file), reference = read_image(c.reference_file);
-  if (image.encoded != reference.encoded) {
-    const auto& of_8_bits = image.encoded ? c.image_file : c.reference_file;
-    if (flags.tone.empty())
-      throw InputError(
-          {of_8_bits.string()},
-          "holds encoded values and the other image linear radiance; say with --tone srgb, linear or "
-          "gamma:G how it was encoded, or compare two files of one kind");
-    ImageFile& radiance = image.encoded ? reference : image;
-    if (count_nonfinite(radiance.image) == 0) radiance.image = displayed(radiance.image, c.display);
-    image.encoded = true;
-  }
-  c.image = std::move(image.image);
-  c.reference = std::move(reference.image);
-  c.encoded = image.encoded;
+void encode_alike(const Comparison& c, Files& files, bool tone_is_given) {
+  ImageFile &image = files.image, &reference = files.reference;
+  if (image.encoded == reference.encoded) return;
+  if (!tone_is_given)
+    throw InputError(
+        {(image.encoded ? c.image_file : c.reference_file).string()},
+        "holds encoded values and the other image linear radiance; say with --tone srgb, linear or "
+        "gamma:G how it was encoded, or compare two files of one kind");
+  ImageFile& radiance = image.encoded ? reference : image;
+  if (count_nonfinite(radiance.image) == 0) radiance.image = displayed(radiance.image, c.display);
+  radiance.encoded = true;
 }
 
-void measure(Comparison& c) {
+void note_left_out(Comparison& c, const std::filesystem::path& file, const ImageFile& read) {
+  if (read.left_out.empty()) return;
+  c.notes.push_back(fmt::format("{}: not compared: {}", file.string(), fmt::join(read.left_out, ", ")));
+}
+
+Files load(Comparison& c, const DisplayFlags& flags, const std::string& layer) {
+  c.display = flags.display();
+  Files files{read_image(c.image_file, layer), read_image(c.reference_file, layer)};
+  note_left_out(c, c.image_file, files.image);
+  note_left_out(c, c.reference_file, files.reference);
+  encode_alike(c, files, !flags.tone.empty());
+  c.encoded = files.image.encoded;
+  return files;
+}
+
+/// The greatest difference of two alphas of one size, which are 1 where a file has none.
+double alpha_difference(const ImageFile& image, const ImageFile& reference) {
+  const auto at = [](const ImageFile& file, std::size_t i) { return file.alpha.empty() ? 1 : file.alpha[i]; };
+  double greatest = 0;
+  for (std::size_t i = 0; i < std::max(image.alpha.size(), reference.alpha.size()); ++i)
+    greatest = std::max<double>(greatest, std::abs(at(image, i) - at(reference, i)));
+  return greatest;
+}
+
+void measure_alpha(Comparison& c, const Files& files) {
+  const bool is_limited = c.limits.greatest.contains("alpha") || c.limits.least.contains("alpha");
+  if (files.image.alpha.empty() && files.reference.alpha.empty() && !is_limited) return;
+  const double difference = alpha_difference(files.image, files.reference);
+  c.measures.push_back({"alpha", difference});
+  if (difference > 0 && !is_limited)
+    c.notes.push_back("alpha differs, and no limit judges it; give --max alpha=VALUE");
+}
+
+void measure_noise(Comparison& c, const Files& files) {
+  if (!c.limits.ztest) return;
+  const bool films = is_film_format(c.image_file) && is_film_format(c.reference_file);
+  c.noise = films ? test_noise(read_film(c.image_file), read_film(c.reference_file), *c.limits.ztest)
+                  : test_noise(files.image, files.reference, *c.limits.ztest);
+}
+
+void measure(Comparison& c, const Files& files) {
+  c.image = files.image.image;
+  c.reference = files.reference.image;
   c.errors = measure_errors(c.image, c.reference, c.encoded ? 1 : greatest_component(c.reference));
   for (const auto& [name, value] : c.errors.named()) c.measures.push_back({name, value});
   const Image shown = c.encoded ? c.image : displayed(c.image, c.display);
@@ -39,11 +79,9 @@ void measure(Comparison& c) {
   c.measures.push_back({"ssim", ssim(shown, shown_reference)});
   c.measures.push_back({"flip", flip(shown, shown_reference)});
   if (!c.encoded) c.measures.push_back({"flip_hdr", flip_hdr(c.image, c.reference)});
+  measure_alpha(c, files);
   if (c.limits.pixels) c.percent_beyond = percent_beyond(c.image, c.reference, c.limits.pixels->bound);
-  if (!c.limits.ztest) return;
-  const bool films = is_film_format(c.image_file) && is_film_format(c.reference_file);
-  c.noise = films ? test_noise(read_film(c.image_file), read_film(c.reference_file), *c.limits.ztest)
-                  : test_noise(read_image(c.image_file), read_image(c.reference_file), *c.limits.ztest);
+  measure_noise(c, files);
 }
 
 void check_bound(Comparison& c, const std::string& name, double bound, bool greatest) {
@@ -86,8 +124,8 @@ void check(Comparison& c) {
 }  // namespace
 
 const std::vector<std::string_view>& metric_names() {
-  static const std::vector<std::string_view> names{"mse",       "rmse", "relmse", "mae",  "psnr",
-                                                   "max_error", "bias", "ssim",   "flip", "flip_hdr"};
+  static const std::vector<std::string_view> names{"mse",  "rmse", "relmse", "mae",      "psnr", "max_error",
+                                                   "bias", "ssim", "flip",   "flip_hdr", "alpha"};
   return names;
 }
 
@@ -97,20 +135,21 @@ bool Comparison::pass() const {
 
 Comparison compare_files(const std::string& name, const std::filesystem::path& image,
                          const std::filesystem::path& reference, const Limits& limits,
-                         const DisplayFlags& flags) {
+                         const DisplayFlags& flags, const std::string& layer) {
   Comparison c;
   c.name = name;
   c.image_file = image;
   c.reference_file = reference;
   c.limits = limits;
+  Files files;
   try {
-    load(c, flags);
+    files = load(c, flags, layer);
   } catch (const InputError& error) {
     c.error = error.what();
     return c;
   }
   try {
-    measure(c);
+    measure(c, files);
     check(c);
   } catch (const InputError& error) {
     c.error = fmt::format("{} against {}: {}", image.string(), reference.string(), error.what());

@@ -38,8 +38,9 @@ struct Comparison {
 
   std::string error;  ///< why the two cannot be compared; then nothing below is set
   Image image, reference;
-  bool encoded = false;  ///< both hold stored values in [0,1], else radiance
-  Display display;       ///< how radiance is shown, and was for ssim and flip
+  bool encoded = false;            ///< both hold stored values in [0,1], else radiance
+  Display display;                 ///< how radiance is shown, and was for ssim and flip
+  std::vector<std::string> notes;  ///< what no metric or limit looked at
   ErrorMetrics errors;
   std::vector<Measure> measures;
   std::optional<double> percent_beyond;
@@ -49,9 +50,9 @@ struct Comparison {
   bool pass() const;  ///< compared, and all checks pass
 };
 
-/// Compares. What cannot be compared is told in `error`.
+/// Compares. What cannot be compared is told in `error`. `layer`: as of `read_image`.
 Comparison compare_files(const std::string& name, const std::filesystem::path& image,
                          const std::filesystem::path& reference, const Limits& limits,
-                         const DisplayFlags& flags);
+                         const DisplayFlags& flags, const std::string& layer = "");
 
 }  // namespace castray::cli

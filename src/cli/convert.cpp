@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -14,6 +16,14 @@ struct Convert {
   std::filesystem::path input;
   std::vector<std::filesystem::path> outputs;
   DisplayFlags flags;
+  std::string layer;
+
+  void warn_of_left_out(const ImageFile& file) const {
+    std::vector<std::string> left_out = file.left_out;
+    if (!file.alpha.empty()) left_out.insert(left_out.begin(), "alpha");
+    if (!left_out.empty())
+      fmt::print(stderr, "castray: warning: {}: left out: {}\n", input.string(), fmt::join(left_out, ", "));
+  }
 
   int run() const {
     const Display display = flags.display();
@@ -23,12 +33,15 @@ struct Convert {
       throw InputError("--exposure shapes .png and .ppm files only, and no output is one; leave it out");
     if (!flags.tone.empty() && !any_encoded && !is_encoded_format(input))
       throw InputError("--tone shapes .png and .ppm files only, and there is none; leave it out");
+    if (!layer.empty() && !has_layers(input))
+      throw InputError("--layer: only .exr files have layers; leave it out");
     if (is_film_format(input) && std::any_of(outputs.begin(), outputs.end(), is_film_format)) {
       const Film film = read_film(input);
       for (const auto& output : outputs) write_film(output, film, display);
       return 0;
     }
-    const ImageFile file = read_image(input);
+    const ImageFile file = read_image(input, layer);
+    warn_of_left_out(file);
     const Image radiance = decoded(file, display.tone);
     for (const auto& output : outputs) {
       warn_of_nonfinite(radiance, output);
@@ -42,9 +55,12 @@ struct Convert {
 
 Run add_convert(Arguments& arguments) {
   auto convert = std::make_shared<Convert>();
-  arguments.add_positional("IMAGE", convert->input, "a .ppm, .png, .pfm, .hdr, .exr or .film file")
+  arguments
+      .add_positional("IMAGE", convert->input,
+                      "an image: .exr .pfm .hdr .film .png .ppm .jpg .tga .bmp .gif or .psd")
       .required();
   add_outputs(arguments, convert->outputs);
+  arguments.add("--layer", convert->layer, "NAME", layer_help);
   convert->flags.add_to(arguments);
   convert->flags.add_bits_to(arguments);
   return [convert] { return convert->run(); };

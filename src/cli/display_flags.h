@@ -28,6 +28,8 @@ bool parse_bits(const std::string& flag, const std::string& text);
 inline constexpr const char* bits_help =
     "16: .ppm, .png and .exr hold 16 bits a value [auto: .ppm and .png 8, .exr 32]";
 
+inline constexpr const char* layer_help = "of an EXR file with several layers, such as ViewLayer.Combined";
+
 /// -o FILE, repeatable and required.
 void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files);
 

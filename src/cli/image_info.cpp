@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "castray/film.h"
 #include "core/text.h"
@@ -33,6 +34,13 @@ void print_range(const Image& image) {
     fmt::print("warning    {} pixels are not finite\n", bad);
 }
 
+void print_alpha(const std::vector<float>& alpha) {
+  const auto [least, greatest] = std::minmax_element(alpha.begin(), alpha.end());
+  const double sum = std::accumulate(alpha.begin(), alpha.end(), 0.0);
+  fmt::print("{:<10} {:.6g} .. {:.6g}, mean {:.6g}\n", "alpha", *least, *greatest,
+             sum / static_cast<double>(alpha.size()));
+}
+
 void print_film(const std::filesystem::path& file) {
   const Film film = read_film(file);
   const Window& w = film.window();
@@ -53,6 +61,8 @@ void print_image_info(const std::filesystem::path& path) {
   fmt::print("size       {} x {}\n", file.image.width, file.image.height);
   fmt::print("values     {}\n", file.encoded ? "encoded, in 0 .. 1" : "linear radiance");
   print_range(file.image);
+  if (!file.alpha.empty()) print_alpha(file.alpha);
+  for (const std::string& other : file.left_out) fmt::print("also       {}\n", other);
   if (is_film_format(path))
     print_film(path);
   else if (file.noise)

@@ -10,13 +10,34 @@
 
 namespace castray {
 
+/// What a reader finds in a file.
+struct Decoded {
+  Raster raster;
+  Metadata metadata = {};
+  std::optional<Noise> noise = {};
+  std::vector<std::string> left_out = {};
+};
+
 /// Reading: `bytes` is all of the file; `name` is for messages. Each throws InputError.
-ImageFile read_ppm(const std::string& name, std::string_view bytes);
-ImageFile read_pfm(const std::string& name, std::string_view bytes);
-ImageFile read_png(const std::string& name, std::string_view bytes);
-ImageFile read_hdr(const std::string& name, std::string_view bytes);
-ImageFile read_exr(const std::string& name, std::string_view bytes);
+Decoded read_netpbm(const std::string& name, std::string_view bytes);  ///< PPM, PGM
+Decoded read_pfm(const std::string& name, std::string_view bytes);
+Decoded read_png(const std::string& name, std::string_view bytes);
+Decoded read_hdr(const std::string& name, std::string_view bytes);
+Decoded read_exr(const std::string& name, std::string_view bytes, const std::string& layer);
 Film parse_film(const std::string& name, std::string_view bytes);
+
+/// By stb_image.
+Decoded read_jpeg(const std::string& name, std::string_view bytes);
+Decoded read_tga(const std::string& name, std::string_view bytes);
+Decoded read_bmp(const std::string& name, std::string_view bytes);
+Decoded read_gif(const std::string& name, std::string_view bytes);
+Decoded read_psd(const std::string& name, std::string_view bytes);
+
+/// Takes alpha out where it is 1 everywhere.
+void drop_opaque_alpha(Raster& raster);
+
+/// Its colours; grey is widened to RGB.
+Image colours_of(const Raster& raster);
 
 void write_pfm(std::ostream& out, const Image& image);
 void write_hdr(std::ostream& out, const Image& image);

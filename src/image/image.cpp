@@ -26,45 +26,64 @@ QuantisedImage quantised(const Image& image, const Display& display) {
   return result;
 }
 
-using Read = ImageFile (*)(const std::string& name, std::string_view bytes);
+using Read = Decoded (*)(const std::string& name, std::string_view bytes, const std::string& layer);
 using Write = void (*)(std::ostream& out, const Image& image, const Display& display,
                        const Metadata& metadata, const std::optional<Noise>& noise);
 
 struct Format {
   const char* suffix;
+  std::string_view signature;  ///< what files begin with; empty: the suffix alone tells
   bool is_encoded;
-  Read read;
+  Read read;    ///< null: a film
   Write write;  ///< null: not from an image
 };
 
-ImageFile read_film_image(const std::string& name, std::string_view bytes) {
-  const Film film = parse_film(name, bytes);
-  return {film.image(), false, describe(film), noise_of(film)};
-}
+/// A reader of a format without layers.
+template <Decoded (*read)(const std::string&, std::string_view)>
+constexpr Read plain =
+    [](const std::string& name, std::string_view bytes, const std::string&) { return read(name, bytes); };
 
 using OptionalNoise = const std::optional<Noise>&;
 
+void write_ppm_image(std::ostream& out, const Image& image, const Display& display, const Metadata&,
+                     OptionalNoise) {
+  write_ppm(out, quantised(image, display));
+}
+void write_png_image(std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
+                     OptionalNoise) {
+  write_png(out, quantised(image, display), metadata);
+}
+void write_pfm_image(std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
+  write_pfm(out, image);
+}
+void write_hdr_image(std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
+  write_hdr(out, image);
+}
+void write_exr_image(std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
+                     OptionalNoise noise) {
+  write_exr(out, image, metadata, noise, display.bits16);
+}
+
 constexpr Format formats[] = {
-    {".ppm", true, read_ppm,
-     [](std::ostream& out, const Image& image, const Display& display, const Metadata&, OptionalNoise) {
-       write_ppm(out, quantised(image, display));
-     }},
-    {".png", true, read_png,
-     [](std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
-        OptionalNoise) { write_png(out, quantised(image, display), metadata); }},
-    {".pfm", false, read_pfm,
-     [](std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
-       write_pfm(out, image);
-     }},
-    {".hdr", false, read_hdr,
-     [](std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
-       write_hdr(out, image);
-     }},
-    {".exr", false, read_exr,
-     [](std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
-        OptionalNoise noise) { write_exr(out, image, metadata, noise, display.bits16); }},
-    {".film", false, read_film_image, nullptr},
+    {".ppm", "P6", true, plain<read_netpbm>, write_ppm_image},
+    {".png", "\x89PNG", true, plain<read_png>, write_png_image},
+    {".pfm", "PF", false, plain<read_pfm>, write_pfm_image},
+    {".hdr", "#?", false, plain<read_hdr>, write_hdr_image},
+    {".exr", "\x76\x2f\x31\x01", false, read_exr, write_exr_image},
+    {".film", "", false, nullptr, nullptr},
+    {".jpg", "\xff\xd8\xff", true, plain<read_jpeg>, nullptr},
+    {".jpeg", "", true, plain<read_jpeg>, nullptr},
+    {".tga", "", true, plain<read_tga>, nullptr},
+    {".bmp", "BM", true, plain<read_bmp>, nullptr},
+    {".gif", "GIF8", true, plain<read_gif>, nullptr},
+    {".psd", "8BPS", true, plain<read_psd>, nullptr},
+    {".pgm", "P5", true, plain<read_netpbm>, nullptr},
+    {".pnm", "", true, plain<read_netpbm>, nullptr},
+    {".rgbe", "", false, plain<read_hdr>, nullptr},
 };
+
+bool is_film(const Format& format) { return !format.read; }
+bool is_written(const Format& format) { return format.write || is_film(format); }
 
 /// Null where the suffix is unknown.
 const Format* find_format(const std::filesystem::path& file) {
@@ -76,14 +95,49 @@ const Format* find_format(const std::filesystem::path& file) {
   return found == std::end(formats) ? nullptr : found;
 }
 
+template <class Included>
+std::string suffixes(Included included) {
+  std::string list;
+  for (const Format& format : formats)
+    if (included(format)) list += std::string(list.empty() ? "" : " ") + format.suffix;
+  return list;
+}
+
 const Format& format_of(const std::filesystem::path& file) {
   if (const Format* format = find_format(file)) return *format;
   const std::string suffix = file.extension().string();
-  std::string known;
-  for (const Format& format : formats) known += std::string(known.empty() ? "" : " ") + format.suffix;
-  throw InputError(
-      {file.string()},
-      (suffix.empty() ? "has no suffix" : "unknown image format '" + suffix + "'") + "; known are " + known);
+  throw InputError({file.string()},
+                   (suffix.empty() ? "has no suffix" : "unknown image format '" + suffix + "'") +
+                       "; known are " + suffixes([](const Format&) { return true; }));
+}
+
+/// What the file's first bytes say, else what its suffix says: files are often named wrongly.
+const Format& format_of(const std::filesystem::path& file, std::string_view bytes) {
+  if (const Format* named = find_format(file); named && is_film(*named)) return *named;
+  for (const Format& format : formats)
+    if (!format.signature.empty() && bytes.starts_with(format.signature)) return format;
+  return format_of(file);
+}
+
+const Format& writable_format_of(const std::filesystem::path& file) {
+  const Format* format = find_format(file);
+  if (format && is_written(*format)) return *format;
+  const std::string suffix = file.extension().string();
+  throw InputError({file.string()}, (suffix.empty() ? "has no suffix"
+                                     : format       ? "images of '" + suffix + "' are read only"
+                                                    : "unknown image format '" + suffix + "'") +
+                                        "; written are " + suffixes(is_written));
+}
+
+ImageFile image_of_film(const Film& film) { return {film.image(), false, describe(film), noise_of(film)}; }
+
+std::vector<float> alpha_of(const Raster& raster) {
+  std::vector<float> alpha;
+  const auto channels = static_cast<std::size_t>(raster.channels);
+  const std::size_t values = std::max(raster.bytes.size(), raster.floats.size());
+  if (raster.has_alpha())
+    for (std::size_t i = channels - 1; i < values; i += channels) alpha.push_back(raster.value(i));
+  return alpha;
 }
 
 }  // namespace
@@ -101,18 +155,29 @@ void check_image_size(const std::string& name, double width, double height, std:
     throw InputError({name}, "the file is too short for its size in pixels; it is truncated or corrupt");
 }
 
-ImageFile read_image(const std::filesystem::path& file) {
-  const Format& format = format_of(file);
+ImageFile read_image(const std::filesystem::path& file, const std::string& layer) {
   const std::string bytes = read_file(file);
-  ImageFile result = format.read(file.string(), bytes);
-  if (const auto beside = variance_file(file); format.read == read_pfm && std::filesystem::exists(beside))
-    result.noise = Noise{read_pfm(beside.string(), read_file(beside)).image};
+  const Format& format = format_of(file, bytes);
+  if (is_film(format)) return image_of_film(parse_film(file.string(), bytes));
+  Decoded decoded = format.read(file.string(), bytes, layer);
+  ImageFile result{colours_of(decoded.raster), decoded.raster.encoded,   std::move(decoded.metadata),
+                   std::move(decoded.noise),   alpha_of(decoded.raster), std::move(decoded.left_out)};
+  const auto beside = variance_file(file);
+  if (find_format(file) == find_format("a.pfm") && std::filesystem::exists(beside))
+    result.noise = Noise{colours_of(read_pfm(beside.string(), read_file(beside)).raster)};
   return result;
+}
+
+Raster read_raster(const std::filesystem::path& file) {
+  const std::string bytes = read_file(file);
+  const Format& format = format_of(file, bytes);
+  if (is_film(format)) throw InputError({file.string()}, "is a film; convert it to an image first");
+  return format.read(file.string(), bytes, "").raster;
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
                  const Metadata& metadata, const std::optional<Noise>& noise) {
-  const Format& format = format_of(file);
+  const Format& format = writable_format_of(file);
   if (!format.write)
     throw InputError({file.string()}, "a film holds samples, which an image has not; choose another format");
   write_file(file, [&](std::ostream& out) { format.write(out, image, display, metadata, noise); });
@@ -126,7 +191,7 @@ std::string encode_png(const Image& image, const Display& display, const Metadat
 
 void check_output_image(const std::filesystem::path& file) {
   check_writable(file);
-  format_of(file);
+  writable_format_of(file);
 }
 
 std::filesystem::path variance_file(const std::filesystem::path& pfm) {
@@ -139,6 +204,7 @@ bool is_variance_file(const std::filesystem::path& file) {
 
 bool is_image_format(const std::filesystem::path& file) { return find_format(file); }
 bool is_encoded_format(const std::filesystem::path& file) { return format_of(file).is_encoded; }
-bool is_film_format(const std::filesystem::path& file) { return !format_of(file).write; }
+bool has_layers(const std::filesystem::path& file) { return format_of(file).read == read_exr; }
+bool is_film_format(const std::filesystem::path& file) { return is_film(format_of(file)); }
 
 }  // namespace castray

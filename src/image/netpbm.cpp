@@ -58,70 +58,68 @@ class Header {
 
 constexpr int max_side = 1 << 24;
 
-Image sized_image(const std::string& name, Header& header) {
-  const int width = header.number("width", 1, max_side);
-  const int height = header.number("height", 1, max_side);
-  check_image_size(name, width, height, header.rest(), 1);
-  return Image(width, height);
+Raster sized_raster(const std::string& name, Header& header, int channels) {
+  Raster raster;
+  raster.width = header.number("width", 1, max_side);
+  raster.height = header.number("height", 1, max_side);
+  raster.channels = channels;
+  check_image_size(name, raster.width, raster.height, header.rest(), 1);
+  return raster;
 }
 
-std::size_t row_start(const Image& image, int y) {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width);
+std::size_t count_values(const Raster& raster) {
+  return static_cast<std::size_t>(raster.width) * static_cast<std::size_t>(raster.height) *
+         static_cast<std::size_t>(raster.channels);
 }
 
 }  // namespace
 
-ImageFile read_ppm(const std::string& name, std::string_view bytes) {
+Decoded read_netpbm(const std::string& name, std::string_view bytes) {
   Header header(name, bytes);
   const std::string magic = header.word();
-  if (magic != "P6" && magic != "P3") throw InputError({name}, "is not a colour PPM file (P6 or P3)");
-  Image image = sized_image(name, header);
+  const bool text = magic == "P2" || magic == "P3", grey = magic == "P2" || magic == "P5";
+  if (!text && magic != "P5" && magic != "P6")
+    throw InputError({name}, "is not a PPM or PGM file (P2, P3, P5 or P6)");
+  Raster raster = sized_raster(name, header, grey ? 1 : 3);
+  raster.encoded = true;
   const int max_value = header.number("greatest value", 1, 65535);
-  const float scale = static_cast<float>(max_value);
-  const auto fill = [&](auto next) {
-    for (Vec3f& pixel : image.pixels)
-      for (int c = 0; c < 3; ++c) pixel[c] = std::min(static_cast<float>(next()) / scale, 1.f);
-  };
-  if (magic == "P3") {
-    fill([&] { return header.number("sample", 0, max_value); });
-  } else {
-    const std::size_t sample_bytes = max_value > 255 ? 2 : 1;
-    if (header.rest() < 3 * sample_bytes * image.pixels.size()) throw InputError({name}, "is truncated");
-    const auto* at = reinterpret_cast<const unsigned char*>(bytes.data()) + header.end();
-    if (sample_bytes == 1)
-      fill([&] { return *at++; });
-    else
-      fill([&] { return at += 2, at[-2] << 8 | at[-1]; });
+  const std::size_t count = count_values(raster);
+  const std::size_t sample_bytes = max_value > 255 ? 2 : 1;
+  if (!text && header.rest() < sample_bytes * count) throw InputError({name}, "is truncated");
+  const auto* at = reinterpret_cast<const unsigned char*>(bytes.data()) + header.end();
+  if (!text && max_value == 255) {
+    raster.bytes.assign(at, at + count);
+    return {std::move(raster)};
   }
-  return {std::move(image), true, {}};
+  const auto next = [&]() -> int {
+    if (text) return header.number("sample", 0, max_value);
+    at += sample_bytes;
+    return sample_bytes == 1 ? at[-1] : at[-2] << 8 | at[-1];
+  };
+  raster.floats.resize(count);
+  for (float& value : raster.floats)
+    value = std::min(static_cast<float>(next()) / static_cast<float>(max_value), 1.f);
+  return {std::move(raster)};
 }
 
-ImageFile read_pfm(const std::string& name, std::string_view bytes) {
+Decoded read_pfm(const std::string& name, std::string_view bytes) {
   Header header(name, bytes);
   const std::string magic = header.word();
   if (magic != "PF" && magic != "Pf") throw InputError({name}, "is not a PFM file (PF or Pf)");
-  Image image = sized_image(name, header);
+  Raster raster = sized_raster(name, header, magic == "PF" ? 3 : 1);
   const double scale = header.number("scale", -1e30, 1e30);
   if (scale == 0) throw InputError({name}, "has scale 0, which gives no byte order");
-  const std::size_t channels = magic == "PF" ? 3 : 1;
-  if (header.rest() < 4 * channels * image.pixels.size()) throw InputError({name}, "is truncated");
+  raster.floats.resize(count_values(raster));
+  if (header.rest() < sizeof(float) * raster.floats.size()) throw InputError({name}, "is truncated");
   const char* at = bytes.data() + header.end();
-  const auto next = [&] {
-    std::uint32_t bits;
-    std::memcpy(&bits, at, 4);
-    at += 4;
-    return std::bit_cast<float>(scale < 0 ? bits : __builtin_bswap32(bits));
-  };
-  for (int y = image.height - 1; y >= 0; --y)
-    for (int x = 0; x < image.width; ++x) {
-      Vec3f& pixel = image.at(x, y);
-      pixel.x = next();
-      if (channels == 1)
-        pixel = Vec3f(pixel.x);
-      else
-        pixel.y = next(), pixel.z = next();
+  const std::size_t row = raster.floats.size() / static_cast<std::size_t>(raster.height);
+  for (std::size_t start = raster.floats.size(); start > 0; start -= row)  // bottom row first
+    for (std::size_t i = start - row; i < start; ++i, at += sizeof(float)) {
+      std::uint32_t bits;
+      std::memcpy(&bits, at, sizeof bits);
+      raster.floats[i] = std::bit_cast<float>(scale < 0 ? bits : __builtin_bswap32(bits));
     }
-  return {std::move(image), false, {}};
+  return {std::move(raster)};
 }
 
 void write_ppm(std::ostream& out, const QuantisedImage& image) {
@@ -134,7 +132,7 @@ void write_pfm(std::ostream& out, const Image& image) {
   static_assert(sizeof(Vec3f) == 12);
   out << "PF\n" << image.width << ' ' << image.height << "\n-1.0\n";
   for (int y = image.height - 1; y >= 0; --y)
-    out.write(reinterpret_cast<const char*>(&image.pixels[row_start(image, y)]), 12L * image.width);
+    out.write(reinterpret_cast<const char*>(&image.at(0, y)), 12L * image.width);
 }
 
 }  // namespace castray

@@ -61,8 +61,6 @@ bool read_header(const Reader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_read_info(reader.png, reader.info);
   png_set_expand(reader.png);  // palettes, fewer than 8 bits, transparency as alpha
-  png_set_gray_to_rgb(reader.png);
-  png_set_strip_alpha(reader.png);
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
   return true;
@@ -73,6 +71,14 @@ bool read_rows(const Reader& reader, png_bytepp rows) {
   png_read_image(reader.png, rows);
   png_read_end(reader.png, reader.info);
   return true;
+}
+
+/// Pairs of bytes become floats.
+void widen(Raster& raster) {
+  raster.floats.reserve(raster.bytes.size() / 2);
+  for (std::size_t i = 0; i < raster.bytes.size(); i += 2)
+    raster.floats.push_back(static_cast<float>(raster.bytes[i] << 8 | raster.bytes[i + 1]) / 65535.f);
+  raster.bytes = {};
 }
 
 Metadata texts_of(const Reader& reader) {
@@ -126,7 +132,7 @@ png_text text_of(const std::string& key, const std::string& value) {
 
 }  // namespace
 
-ImageFile read_png(const std::string& name, std::string_view bytes) {
+Decoded read_png(const std::string& name, std::string_view bytes) {
   if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw InputError({name}, "is not a PNG file");
   check_chunk_lengths(name, bytes);
   Failure failure;
@@ -147,17 +153,18 @@ ImageFile read_png(const std::string& name, std::string_view bytes) {
                    8 * 1100);  // one bit a pixel, deflate's best ratio
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   const bool deep = png_get_bit_depth(reader.png, reader.info) == 16;
-  std::vector<unsigned char> data(row_bytes * height);
+  Raster raster{static_cast<int>(width),
+                static_cast<int>(height),
+                png_get_channels(reader.png, reader.info),
+                true,
+                std::vector<unsigned char>(row_bytes * height),
+                {}};
   std::vector<png_bytep> rows(height);
-  for (std::size_t y = 0; y < height; ++y) rows[y] = data.data() + y * row_bytes;
+  for (std::size_t y = 0; y < height; ++y) rows[y] = raster.bytes.data() + y * row_bytes;
   if (!read_rows(reader, rows.data())) fail();
-
-  ImageFile result{Image(static_cast<int>(width), static_cast<int>(height)), true, texts_of(reader)};
-  const unsigned char* at = data.data();
-  for (Vec3f& pixel : result.image.pixels)
-    for (int c = 0; c < 3; ++c, at += deep ? 2 : 1)
-      pixel[c] = deep ? static_cast<float>(at[0] << 8 | at[1]) / 65535.f : static_cast<float>(at[0]) / 255.f;
-  return result;
+  if (deep) widen(raster);
+  drop_opaque_alpha(raster);
+  return {std::move(raster), texts_of(reader)};
 }
 
 void write_png(std::ostream& out, const QuantisedImage& image, const Metadata& metadata) {

@@ -5,6 +5,7 @@
 
 #include "core/files.h"
 #include "run_castray.h"
+#include "small_files.h"
 #include "test_image.h"
 
 using namespace castray;
@@ -95,7 +96,7 @@ TEST_CASE("what cannot be compared, converted or merged is one line and exit cod
       {{"compare", "a.png", "b.pfm", "--tone", "log"}, "unknown tone curve 'log'"},
       {{"compare", "a.pfm", "b.pfm", "--exposure", "nan"}, "--exposure"},
       {{"convert", "a.pfm"}, "--output"},
-      {{"convert", "a.pfm", "-o", "a.jpg"}, "a.jpg: unknown image format '.jpg'; known are .ppm"},
+      {{"convert", "a.pfm", "-o", "a.jpg"}, "a.jpg: images of '.jpg' are read only; written are .ppm"},
       {{"convert", "a.pfm", "-o", "a.film"}, "another format"},
       {{"convert", "a.pfm", "-o", "c.exr", "--exposure", "1"}, "leave it out"},
       {{"merge", "0.film", "0.film", "-o", "m.film"}, "both films hold sample 0"},
@@ -223,4 +224,43 @@ TEST_CASE("info shows what images and films hold") {
              Contains("samples    0:7") && Contains("scene=test; seed=0"));
   CHECK_THAT(files.run({"info", "nan.pfm"}).out,
              Contains("1 pixels are not finite") && Contains("linear radiance"));
+}
+
+TEST_CASE("compare and convert read layers, and say what they leave out") {
+  const TemporaryFolder folder;
+  const std::string golden = CASTRAY_ROOT "/tests/golden/images/";
+  const auto run = [&](std::vector<std::string> arguments) { return run_castray(arguments, folder.path()); };
+  const std::string layer = golden + "layer.exr", plain = golden + "plain.exr";
+  CHECK(run({"compare", layer, plain, "--layer", "ViewLayer.Combined", "--max", "max_error=0"}).exit_code ==
+        0);
+  CHECK_THAT(run({"compare", layer, plain, "--layer", "x"}).err,
+             Contains("no layer 'x'; its layers are ViewLayer.Combined (R G B A)"));
+  CHECK(run({"convert", layer, "--layer", "ViewLayer.Combined", "-o", "c.pfm"}).exit_code == 0);
+  CHECK(run({"compare", "c.pfm", plain, "--max", "max_error=0"}).exit_code == 0);
+  CHECK(run({"compare", "c.pfm", "c.pfm", "--layer", "x"}).exit_code == 2);
+  CHECK(run({"convert", "c.pfm", "--layer", "x", "-o", "d.pfm"}).exit_code == 2);
+  CHECK(run({"compare", golden + "xyz_a.exr", golden + "xyz_b.exr", "--max", "max_error=0"}).exit_code == 1);
+  const RunResult shifted = run(
+      {"compare", golden + "shifted.exr", golden + "full.exr", "--max", "max_error=0", "--json", "r.json"});
+  CHECK(shifted.exit_code == 1);
+  CHECK_THAT(shifted.out, Contains("shifted.exr: not compared: pixels outside its display window"));
+  CHECK(nlohmann::json::parse(read_file(folder / "r.json"))["notes"].size() == 1);
+  CHECK_THAT(run({"convert", golden + "shifted.exr", "-o", "d.pfm"}).err,
+             Contains("left out: pixels outside its display window"));
+}
+
+TEST_CASE("alpha is measured, limited and told") {
+  const TemporaryFolder folder;
+  const auto run = [&](std::vector<std::string> arguments) { return run_castray(arguments, folder.path()); };
+  write_file(folder / "a.png", png_file(1, 8, 6, {std::string("\1\2\3\x66", 4)}));  // alpha .4
+  write_file(folder / "b.png", png_file(1, 8, 2, {std::string("\1\2\3", 3)}));
+  const RunResult told = run({"compare", "a.png", "b.png", "--max", "max_error=0"});
+  CHECK(told.exit_code == 0);
+  CHECK_THAT(told.out,
+             Contains("alpha               0.6") && Contains("note: alpha differs, and no limit judges it"));
+  CHECK(run({"compare", "a.png", "b.png", "--max", "alpha=0.5"}).exit_code == 1);
+  CHECK(run({"compare", "a.png", "a.png", "--max", "alpha=0"}).exit_code == 0);
+  CHECK(run({"compare", "b.png", "b.png", "--max", "alpha=0"}).exit_code == 0);
+  CHECK_THAT(run({"convert", "a.png", "-o", "c.png"}).err, Contains("a.png: left out: alpha"));
+  CHECK_THAT(run({"info", "a.png"}).out, Contains("alpha      0.4 .. 0.4, mean 0.4"));
 }

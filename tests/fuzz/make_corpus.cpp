@@ -1,5 +1,7 @@
 // Writes the inputs that fuzzing starts from: FOLDER/<target>/<seed>.
 
+#include <stb/stb_image_write.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -9,6 +11,7 @@
 #include "castray/image.h"
 #include "core/files.h"
 #include "image/formats.h"
+#include "small_files.h"
 #include "temporary_folder.h"
 
 namespace {
@@ -45,6 +48,26 @@ void write_images(const fs::path& folder) {
     write_seed(folder, suffix.substr(1), choice + read_file(file));
     ++choice;
   }
+  const std::vector<unsigned char> pixels(3 * 9 * 9, 100);
+  const auto add = [&](const char* name, auto write) {
+    std::string bytes(1, choice++);
+    write(
+        [](void* to, void* from, int size) {
+          static_cast<std::string*>(to)->append(static_cast<char*>(from), static_cast<std::size_t>(size));
+        },
+        &bytes);
+    write_seed(folder, name, bytes);
+  };
+  add("jpg", [&](auto append, void* to) { stbi_write_jpg_to_func(append, to, 9, 9, 3, pixels.data(), 50); });
+  add("tga", [&](auto append, void* to) { stbi_write_tga_to_func(append, to, 9, 9, 3, pixels.data()); });
+  add("bmp", [&](auto append, void* to) { stbi_write_bmp_to_func(append, to, 9, 9, 3, pixels.data()); });
+  const std::string palette(12, '\x50');
+  write_seed(folder, "gif", choice++ + gif_file(3, 2, palette, 1, {std::string("\0\1\2\3\1\1", 6)}));
+  write_seed(folder, "psd", choice++ + psd_file(2, 1, 3, 8, "abcdef"));
+  for (const char* name : {"layer.exr", "autocrop.exr"})
+    write_seed(folder, name, '\4' + read_file(fs::path(CASTRAY_ROOT) / "tests/golden/images" / name));
+  write_seed(folder, "exposure",
+             '\3' + read_file(fs::path(CASTRAY_ROOT) / "tests/golden/images/exposure.hdr"));
   write_seed(folder, "ppm_text", std::string(1, '\0') + "P3\n# grey\n2 1 255\n0 0 0 255 255 255\n");
 }
 

@@ -89,8 +89,9 @@ const std::vector<Case> cases = {
     render({"--camera-position", "0,0,1", "--look-at", "0,0,0", "--up", "0,0,1"},
            "the camera's up must not be parallel to its view direction"),
     // Outputs
-    render({"-o", "x"}, "x: has no suffix; known are .ppm .png .pfm .hdr .exr .film"),
-    render({"-o", "x.jpg"}, "x.jpg: unknown image format '.jpg'; known are .ppm .png .pfm .hdr .exr .film"),
+    render({"-o", "x"}, "x: has no suffix; written are .ppm .png .pfm .hdr .exr .film"),
+    render({"-o", "x.jpg"}, "x.jpg: images of '.jpg' are read only; written are .ppm .png .pfm .hdr .exr .film"),
+    render({"-o", "x.tif"}, "x.tif: unknown image format '.tif'; written are .ppm .png .pfm .hdr .exr .film"),
     render({"-o", "gone/x.png"}, "gone/x.png: the folder gone does not exist; create it first"),
     render({"-o", "."}, ".: is a folder; give a file name"),
     render({"-o", ""}, "an output file's name is empty; give a path"),
