@@ -15,19 +15,6 @@ std::array<float, 256> values_of_bytes(const ToneCurve& curve) {
 
 constexpr ToneCurve linear{ToneCurve::Kind::linear, 1};
 
-/// The image's values as whole numbers of 1/255; empty where they are not.
-std::vector<std::uint8_t> bytes_of(const Image& image) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(3 * image.pixels.size());
-  for (const Vec3f& pixel : image.pixels)
-    for (int c = 0; c < 3; ++c) {
-      const float steps = std::round(pixel[c] * 255.f);
-      if (!(steps >= 0 && steps <= 255 && steps / 255.f == pixel[c])) return {};
-      bytes.push_back(static_cast<std::uint8_t>(steps));
-    }
-  return bytes;
-}
-
 }  // namespace
 
 const std::array<float, 256>& byte_values(ColorSpace space) {
@@ -48,17 +35,19 @@ Texture make_texture(std::string name, const Image& image) {
   return texture;
 }
 
-Texture make_texture(std::string name, const ImageFile& file, ColorSpace space) {
-  std::vector<std::uint8_t> bytes;
-  if (file.encoded) bytes = bytes_of(file.image);
-  if (bytes.empty())
-    return make_texture(std::move(name), decoded(file, space == ColorSpace::srgb ? ToneCurve{} : linear));
+Texture make_texture(std::string name, Raster&& raster, ColorSpace space) {
+  const auto channels = static_cast<std::size_t>(raster.channels);
+  if (raster.encoded && space == ColorSpace::srgb)
+    for (std::size_t i = 0; i < raster.floats.size(); ++i)
+      if (const bool is_alpha = raster.has_alpha() && i % channels == channels - 1; !is_alpha)
+        raster.floats[i] = static_cast<float>(ToneCurve{}.decode(raster.floats[i]));
   return {.name = std::move(name),
-          .width = file.image.width,
-          .height = file.image.height,
-          .channels = 3,
+          .width = raster.width,
+          .height = raster.height,
+          .channels = raster.channels,
           .color_space = space,
-          .bytes = std::move(bytes)};
+          .bytes = std::move(raster.bytes),
+          .floats = std::move(raster.floats)};
 }
 
 Texel texel(const Texture& texture, std::size_t index) {

@@ -10,9 +10,9 @@
 
 namespace castray {
 
-/// A texture of a file's values: bytes where each is a whole number of 1/255, else floats, decoded as
-/// `space` says.
-Texture make_texture(std::string name, const ImageFile& file, ColorSpace space);
+/// A texture of a file's values: its bytes, to be decoded as `space` says, or its floats, decoded so where
+/// the file holds encoded values. Alpha is linear.
+Texture make_texture(std::string name, Raster&& raster, ColorSpace space);
 
 /// A texture of linear values.
 Texture make_texture(std::string name, const Image& image);

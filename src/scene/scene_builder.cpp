@@ -80,11 +80,11 @@ std::uint16_t SceneBuilder::add_material(Material material) {
 int SceneBuilder::add_texture(const std::filesystem::path& file, ColorSpace space) {
   const auto [found, is_new] = textures_.try_emplace({file, space}, static_cast<int>(scene.textures.size()));
   if (is_new) {
-    const ImageFile read = read_image(file);
-    for (const Vec3f& texel : read.image.pixels)
-      if (!is_finite(texel) || std::min({texel.x, texel.y, texel.z}) < 0)
+    Raster raster = read_raster(file);
+    for (const float value : raster.floats)
+      if (!(value >= 0 && std::isfinite(value)))
         throw InputError(SourcePlace{file.string()}, "a texture's values must be finite and at least 0");
-    scene.textures.push_back(make_texture(file.filename().string(), read, space));
+    scene.textures.push_back(make_texture(file.filename().string(), std::move(raster), space));
   }
   return found->second;
 }

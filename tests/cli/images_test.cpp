@@ -257,7 +257,7 @@ TEST_CASE("alpha is measured, limited and told") {
   const RunResult told = run({"compare", "a.png", "b.png", "--max", "max_error=0"});
   CHECK(told.exit_code == 0);
   CHECK_THAT(told.out,
-             Contains("alpha               0.6") && Contains("note: alpha differs, and no limit judges it"));
+             Contains("alpha              0.6") && Contains("note: alpha differs, and no limit judges it"));
   CHECK(run({"compare", "a.png", "b.png", "--max", "alpha=0.5"}).exit_code == 1);
   CHECK(run({"compare", "a.png", "a.png", "--max", "alpha=0"}).exit_code == 0);
   CHECK(run({"compare", "b.png", "b.png", "--max", "alpha=0"}).exit_code == 0);

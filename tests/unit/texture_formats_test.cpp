@@ -6,6 +6,7 @@
 #include "castray/error.h"
 #include "castray/image.h"
 #include "core/files.h"
+#include "materials/texture.h"
 #include "small_files.h"
 #include "temporary_folder.h"
 
@@ -142,6 +143,27 @@ TEST_CASE("a file is what its first bytes say, whatever its suffix") {
   const Bytes pixels = gradient(8, 8, 3);
   CHECK(raster_of("a.png", written("bmp", 8, 8, 3, pixels)).bytes == pixels);
   CHECK(raster_of("a.jpg", written("png", 8, 8, 3, pixels)).bytes == pixels);
+}
+
+TEST_CASE("as textures, bytes stay bytes and encoded values of 16 bits are decoded, but for alpha") {
+  const std::string name = "t";
+  const auto texture = [&](const std::string& png, ColorSpace space) {
+    return make_texture(name, raster_of("a.png", png), space);
+  };
+  const std::string shallow = png_file(1, 8, 4, {text({51, 102})});
+  const std::string deep = png_file(1, 16, 4, {text({0x33, 0x33, 0x66, 0x66})});  // .2 and .4
+  CHECK(texture(shallow, ColorSpace::srgb).bytes == Bytes{51, 102});
+  const auto decoded = static_cast<float>(ToneCurve{}.decode(.2));
+  for (const std::string& png : {shallow, deep}) {
+    const Texel light = texel(texture(png, ColorSpace::srgb), 0),
+                data = texel(texture(png, ColorSpace::linear), 0);
+    for (std::size_t c = 0; c < 3; ++c) {
+      CHECK(light[c] == Approx(decoded));
+      CHECK(data[c] == Approx(.2));
+    }
+    CHECK(light[3] == Approx(.4));
+    CHECK(data[3] == Approx(.4));
+  }
 }
 
 TEST_CASE("images for comparisons: grey is widened, alpha stands apart") {
