@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "castray/render.h"
+#include "core/contract.h"
 
 namespace castray {
 
@@ -20,45 +21,5 @@ std::array<float, 4> sample_block(SamplerKind kind, std::uint32_t key, std::uint
 
 /// The key of pixel (x,y) of the full image under a seed.
 std::uint32_t pixel_key(int x, int y, std::uint64_t seed);
-
-/// Which block serves which decision.
-struct PathBlocks {
-  static constexpr std::uint32_t camera = 0;  ///< jitter (2), light point of the first vertex (2)
-  /// At vertex k >= 0 (0 is the camera's hit): direction (2), light point of vertex k + 1 (2).
-  static constexpr std::uint32_t direction(std::uint32_t vertex) { return 1 + 2 * vertex; }
-  /// At vertex k: roulette, lobe choice, light choice, spare.
-  static constexpr std::uint32_t choice(std::uint32_t vertex) { return 2 + 2 * vertex; }
-};
-
-/// A good 32-bit finaliser (low-bias constants of Wellons' search, "lowbias32").
-constexpr std::uint32_t hash32(std::uint32_t x) {
-  x ^= x >> 16;
-  x *= 0x7feb352du;
-  x ^= x >> 15;
-  x *= 0x846ca68bu;
-  x ^= x >> 16;
-  return x;
-}
-
-constexpr std::uint32_t hash_combine(std::uint32_t a, std::uint32_t b) {
-  return hash32(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u));
-}
-
-/// The seed of dimension d < 4 of a block's scramble, from the block's seed.
-constexpr std::uint32_t dimension_seed(std::uint32_t seed, std::uint32_t d) {
-  constexpr std::uint32_t factor[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
-  const std::uint32_t v = seed * factor[d];
-  return v ^ (v >> 16);
-}
-
-/// Nested uniform scramble in which every bit depends on the lower ones.
-constexpr std::uint32_t owen_hash(std::uint32_t v, std::uint32_t seed) {
-  v ^= v * 0x3d20adeau;
-  v += seed;
-  v *= (seed >> 16) | 1u;
-  v ^= v * 0x05526c56u;
-  v ^= v * 0x53a22864u;
-  return v;
-}
 
 }  // namespace castray

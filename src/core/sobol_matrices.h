@@ -2,10 +2,9 @@
 
 #include <cstdint>
 
-namespace castray {
+#include "core/contract.h"
 
-/// Samples of one scramble: 2^index_bits.
-constexpr int index_bits = 20;
+namespace castray {
 
 /// Generator matrices of Sobol's dimensions 1 to 3 (Joe and Kuo 2008), from their primitive polynomials and
 /// initial numbers; column j is what bit j of the index contributes. Bit 31 is the first digit after the

@@ -4,6 +4,7 @@
 
 #include "castray/render.h"
 #include "castray/scene.h"
+#include "core/contract.h"
 
 namespace castray {
 
@@ -17,13 +18,6 @@ namespace castray {
 // * The environment is never sampled as a light: a ray that escapes adds all of it.
 // * One direction is drawn from the BSDF; then roulette; then the next vertex.
 
-/// Automatic roulette starts at this vertex: earlier the light saved is worth less than the noise added.
-constexpr std::uint32_t first_roulette_vertex = 2;
-/// Survival is never surer than this, so that a path between white walls ends.
-constexpr double highest_survival = 0.95;
-/// A fixed survival probability is capped too from this vertex on: recursion and time stay bounded.
-constexpr std::uint32_t last_uncapped_vertex = 1000;
-
 /// The probability that a path goes on from `vertex`. `brightest` is the largest component of its throughput,
 /// the next segment's weight included and the radiance scale of refractions taken out.
 template <class T>
@@ -31,7 +25,7 @@ T survival_probability(const std::optional<double>& fixed, std::uint32_t vertex,
   constexpr T cap = static_cast<T>(highest_survival);
   if (fixed) {
     const T p = static_cast<T>(*fixed);
-    return vertex < last_uncapped_vertex || p < cap ? p : cap;
+    return vertex < first_capped_vertex || p < cap ? p : cap;
   }
   if (vertex < first_roulette_vertex) return 1;
   return brightest < cap ? brightest : cap;

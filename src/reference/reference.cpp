@@ -14,9 +14,6 @@ namespace castray {
 
 namespace {
 
-/// Up to about this many triangles the list is faster than a tree.
-constexpr std::size_t list_up_to = 64;
-
 /// The scene in the file's own coordinates, rounded to float: what a path tracer without re-centring works
 /// on.
 Scene in_file_coordinates(Scene scene) {
@@ -73,7 +70,7 @@ RenderResult trace(const Scene& scene, const RenderOptions& options, const Progr
   if (options.fault == Fault::vanishing_boxes)
     return trace<T>(scene, FlatSlabList<T>(mesh_of(scene)), options, progress, start);
   const bool list = options.accel == AccelKind::list ||
-                    (options.accel == AccelKind::automatic && scene.triangles.size() <= list_up_to);
+                    (options.accel == AccelKind::automatic && scene.triangles.size() <= longest_list);
   if (list) {
     RenderResult result = trace<T>(scene, TriangleList(mesh_of(scene)), options, progress, start);
     result.stats.accel_summary = fmt::format("list: {} triangles", scene.triangles.size());

@@ -13,9 +13,6 @@ namespace castray {
 
 namespace {
 
-/// Up to so many triangles a flat list is faster than a tree.
-constexpr std::size_t longest_list = 64;
-
 /// With more, light points are what a tile's error comes from.
 constexpr std::size_t few_light_triangles = 8;
 

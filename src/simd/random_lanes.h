@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/contract.h"
 #include "core/sobol_matrices.h"
 #include "simd/lanes.h"
 
@@ -13,26 +14,6 @@ struct Sequence {
   Uint index;  ///< sample index within its epoch
 };
 
-CASTRAY_INLINE Uint hash32(Uint x) {
-  x = x ^ (x >> 16);
-  x = x * 0x7feb352du;
-  x = x ^ (x >> 15);
-  x = x * 0x846ca68bu;
-  return x ^ (x >> 16);
-}
-CASTRAY_INLINE Uint hash_combine(Uint a, Uint b) { return hash32(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u)); }
-CASTRAY_INLINE Uint dimension_seed(Uint seed, int d) {
-  constexpr uint32_t factor[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
-  const Uint v = seed * factor[d];
-  return v ^ (v >> 16);
-}
-CASTRAY_INLINE Uint owen_hash(Uint v, Uint seed) {
-  v = v ^ (v * 0x3d20adeau);
-  v = v + seed;
-  v = v * ((seed >> 16) | 1u);
-  v = v ^ (v * 0x05526c56u);
-  return v ^ (v * 0x53a22864u);
-}
 CASTRAY_INLINE Float to_unit(Uint v) { return to_float(v >> 8) * 0x1p-24f; }
 
 /// What each group of four index bits contributes to the dimensions 1 to 3, digits reversed (first digit in

@@ -42,7 +42,7 @@ void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
     const Uint entry = Uint((uint32_t)i) + lane_index();
     const Uint x = load(pixels.x + i), y = load(pixels.y + i);
     const Uint key = with_epoch(hash_combine(hash_combine(Uint(c.options.seed), x), y), c.job.sample);
-    const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, 0);
+    const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
     const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));
     const Float py = to_float(y) + (c.options.jitter ? n.u[1] : Float(0.5f));
     const CameraRay ray = camera_ray(camera, px, py);

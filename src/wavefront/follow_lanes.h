@@ -14,9 +14,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Automatic roulette starts at this vertex; the same as first_roulette_vertex of the reference.
-inline constexpr uint32_t first_roulette = 2;
-
 /// A suffix serves many pixels, so it is worth following further.
 inline constexpr uint32_t first_roulette_of_suffixes = 4;
 

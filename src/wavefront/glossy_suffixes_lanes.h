@@ -38,8 +38,8 @@ CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes&
   out.count = 0;
   for (int i = 0; i < y.count; i += width) {
     const Sequence sequence = sequence_of(y.names, i);
-    const Numbers<4> n = draw<4>(c.options.sobol, sequence, direction_block(1));
-    const Numbers<2> choice = draw<2>(c.options.sobol, sequence, choice_block(1));
+    const Numbers<4> n = draw<4>(c.options.sobol, sequence, PathBlocks::direction(1));
+    const Numbers<2> choice = draw<2>(c.options.sobol, sequence, PathBlocks::choice(1));
     const Shading shading = shading_of<features>(c.scene, y, i);
     const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
     const Vec wi = to_world(shading.frame, s.wi);

@@ -9,7 +9,7 @@ LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i
                                bool opaque) {
   Numbers<4> n{{Float(0.f), Float(0.f), Float(0.f), Float(0.f)}};
   if (c.scene.lights.count > 1)
-    n = draw<4>(c.options.sobol, sequence_of(vertices.names, i), choice_block(vertex));
+    n = draw<4>(c.options.sobol, sequence_of(vertices.names, i), PathBlocks::choice(vertex));
   Mask one_sided(true);
   if (!opaque) one_sided = ~has_traits(c.scene, record_of(load(vertices.material + i)), trait_transmits);
   const Receiver receiver = receiving_point(load(vertices.p, i), load(vertices.normal, i), one_sided);

@@ -27,7 +27,7 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   if (options.suffixes > 0 && may_have_edges(options, 2))
     share<Geometry, features>(c, s);
   else
-    follow<Geometry, features>(c, s, s.camera, 0, first_roulette);
+    follow<Geometry, features>(c, s, s.camera, 0, first_roulette_vertex);
   clamp_indirect(c, s);
   for (int i = 0; i < job.tiles * tile_pixels; ++i) {
     result.radiance[0][i] = s.radiance.x[i];

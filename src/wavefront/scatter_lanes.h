@@ -10,9 +10,9 @@ namespace castray::CASTRAY_ISA {
 /// ends.
 CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uint32_t first_roulette,
                               Float brightest) {
-  constexpr float highest = 0.95f;
+  constexpr float highest = (float)highest_survival;
   if (options.fixed_roulette)
-    return Float(vertex < 1000 || options.survival < highest ? options.survival : highest);
+    return Float(vertex < first_capped_vertex || options.survival < highest ? options.survival : highest);
   return vertex < first_roulette ? Float(1.f) : min(brightest, Float(highest));
 }
 
@@ -24,12 +24,12 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
   const bool roulette = c.options.fixed_roulette || vertex >= first_roulette;
   for (int i = 0; i < vertices.count; i += width) {
     const Sequence sequence = sequence_of(vertices.names, i);
-    const Numbers<4> n = draw<4>(c.options.sobol, sequence, direction_block(vertex));
+    const Numbers<4> n = draw<4>(c.options.sobol, sequence, PathBlocks::direction(vertex));
     Vec throughput = load(vertices.throughput, i), o = load(vertices.p, i), wi;
     Float arrival(0.f), eta2(1.f), brightest;
     Numbers<2> choice{{Float(0.f), Float(0.f)}};
     if (roulette || (features & feature_materials))
-      choice = draw<2>(c.options.sobol, sequence, choice_block(vertex));
+      choice = draw<2>(c.options.sobol, sequence, PathBlocks::choice(vertex));
     if constexpr (features & feature_materials) {
       const Shading shading = shading_of<features>(c.scene, vertices, i);
       const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);

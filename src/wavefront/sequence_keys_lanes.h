@@ -7,11 +7,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The random numbers' block for a path vertex; the same as PathBlocks of core/sequences.h.
-constexpr uint32_t direction_block(uint32_t vertex) { return 1 + 2 * vertex; }
-
-constexpr uint32_t choice_block(uint32_t vertex) { return 2 + 2 * vertex; }
-
 /// The key's part that stands for the epoch of the sample index (see sample_block).
 CASTRAY_INLINE Uint with_epoch(Uint key, uint64_t sample) {
   const uint32_t epoch = (uint32_t)(sample >> index_bits);

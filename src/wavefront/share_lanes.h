@@ -37,7 +37,7 @@ CASTRAY_STAGE void share(Context& c, Scratch& s) {
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   if constexpr (features & feature_materials) {
     split_unshareable(c.scene, s.camera, s.vertices);
-    if (s.vertices.count > 0) follow<Geometry, features>(c, s, s.vertices, 0, first_roulette);
+    if (s.vertices.count > 0) follow<Geometry, features>(c, s, s.vertices, 0, first_roulette_vertex);
   }
   for (int tile = 0; tile < c.job.tiles; ++tile)
     bound_tile(s.camera, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);

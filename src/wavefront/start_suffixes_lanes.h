@@ -28,7 +28,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
       const Uint entry =
           Uint((uint32_t)(tile * tile_pixels)) + select(there, (item << shift) + in_stratum, Uint(0u));
       const Uint index = tile_index(key, c.job.sample, item, per_tile);
-      const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, direction_block(0));
+      const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, PathBlocks::direction(0));
       const Vec normal = gather_entries(x.normal, entry);
       const Parameters<features> parameters = gather_entries<features>(x.parameters, entry);
       Vec wi, weight = parameters.kd();
@@ -36,7 +36,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
         const Frame frame = make_frame(gather_entries(x.shading_normal, entry));
         const Shading shading{gather_bsdf(c.scene, gather(x.material, entry), parameters), frame,
                               to_local(frame, gather_entries(x.wo, entry)), normal};
-        const Numbers<2> choice = draw<2>(c.options.sobol, {Uint(key), index}, choice_block(0));
+        const Numbers<2> choice = draw<2>(c.options.sobol, {Uint(key), index}, PathBlocks::choice(0));
         const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
         wi = to_world(frame, s.wi);
         weight = select(shading.consistent(wi, s.wi), s.weight, black());

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <stdint.h>
+
+// What all integrators agree on: the numbers that place a path in the random sequence, hash it, and end it.
+// Included by host code and by kernels. Kernels are compiled once for each instruction set, so this file
+// holds constants and functions that are always inlined, and includes no library: a shared function could be
+// linked from the wrong set.
+//
+// Functions of U work on uint32_t and on the kernels' lanes of it alike.
+
+namespace castray {
+
+#define CASTRAY_CONTRACT [[gnu::always_inline]] constexpr
+
+// Random numbers (core/sequences.h).
+
+/// Sobol' points of one scramble: 2^index_bits. Sample index >> index_bits is the epoch; each epoch has a
+/// scramble of its own.
+inline constexpr int index_bits = 20;
+
+/// The blocks of four random numbers that a path uses.
+struct PathBlocks {
+  /// Position in the pixel (2), light point of the first vertex (2).
+  static constexpr uint32_t camera = 0;
+  /// At vertex k >= 0 (0 is the camera's hit): direction (2), light point of vertex k + 1 (2).
+  CASTRAY_CONTRACT static uint32_t direction(uint32_t vertex) { return 1 + 2 * vertex; }
+  /// At vertex k: roulette, lobe, light, spare.
+  CASTRAY_CONTRACT static uint32_t choice(uint32_t vertex) { return 2 + 2 * vertex; }
+};
+
+/// A 32-bit finaliser of low bias (Wellons' "lowbias32").
+template <class U>
+CASTRAY_CONTRACT U hash32(U x) {
+  x = x ^ (x >> 16);
+  x = x * 0x7feb352du;
+  x = x ^ (x >> 15);
+  x = x * 0x846ca68bu;
+  return x ^ (x >> 16);
+}
+
+template <class U>
+CASTRAY_CONTRACT U hash_combine(U a, U b) {
+  return hash32(a ^ (b * 0x9e3779b9u + 0x7f4a7c15u));
+}
+
+/// The seed of dimension d < 4 of a block's scramble, from the block's seed.
+template <class U>
+CASTRAY_CONTRACT U dimension_seed(U seed, int d) {
+  constexpr uint32_t factor[4] = {0x9e3779b1u, 0x85ebca77u, 0xc2b2ae3du, 0x27d4eb2fu};
+  const U v = seed * factor[d];
+  return v ^ (v >> 16);
+}
+
+/// Nested uniform scramble (Owen 1995) of bit-reversed v: every bit depends on the lower ones only. After
+/// Laine and Karras 2011, section 3, with the constants that pbrt-v4 uses.
+template <class U>
+CASTRAY_CONTRACT U owen_hash(U v, U seed) {
+  v = v ^ (v * 0x3d20adeau);
+  v = v + seed;
+  v = v * ((seed >> 16) | 1u);
+  v = v ^ (v * 0x05526c56u);
+  return v ^ (v * 0x53a22864u);
+}
+
+// Russian roulette.
+
+/// By throughput it starts at this vertex; earlier it saves less time than it adds noise.
+inline constexpr uint32_t first_roulette_vertex = 2;
+/// The survival probability by throughput is at most this, so that paths between white walls end.
+inline constexpr double highest_survival = 0.95;
+/// From this vertex on a fixed survival probability has the same bound, so that time and recursion have one.
+inline constexpr uint32_t first_capped_vertex = 1000;
+
+// Choices that depend on the scene.
+
+/// Up to so many triangles a flat list is faster than a tree.
+inline constexpr uint32_t longest_list = 64;
+/// Light and BSDF sampling are combined where emitters cover more than this part of the scene's surface:
+/// light points very near the shaded point would dominate the variance. A lamp covers a hundredth of a room;
+/// a furnace is all emitter.
+inline constexpr double emitting_share_for_mis = 0.1;
+
+#undef CASTRAY_CONTRACT
+
+}  // namespace castray
