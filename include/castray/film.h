@@ -85,7 +85,7 @@ class Film {
   void merge(const Film& other);
 
   /// All that the samples depend on besides their index (scene, seed, options), as "name=value" items
-  /// separated by "; ".
+  /// separated by "; "; in a value '%', ';', '=' and control characters are written as "%XX".
   std::string key;
   std::vector<SampleRange> samples;  ///< rendered so far, ascending, disjoint, not adjacent
   std::uint64_t nonfinite_samples = 0;

@@ -45,7 +45,7 @@ void check_flags(const BenchFlags& flags) {
     if (!(seconds > 0)) throw InputError("--seconds: each budget must be above 0");
   for (const std::string& peer : flags.peers) Peer::parse(peer);
   for (const std::string& configuration : flags.configurations)
-    configured_options({}, split_configuration(configuration).flags);
+    configured_request({}, split_configuration(configuration).flags);
   for (const std::string& file : {flags.json, flags.csv, flags.html, flags.svg})
     if (!file.empty()) check_writable(file);
 }

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "castray/error.h"
-#include "render/film_key.h"
+#include "plan/job.h"
 
 namespace castray::cli {
 
@@ -52,22 +52,27 @@ ReferencePair read_references(const std::string& text, const std::string& scene_
   return pair;
 }
 
-ReferencePair cached_references(const Scene& scene, RenderOptions options, const std::filesystem::path& cache,
+ReferencePair cached_references(const Scene& scene, const RenderRequest& request,
+                                const std::filesystem::path& cache,
                                 const std::function<void(int, const Progress&)>& progress) {
   std::error_code failed;
   std::filesystem::create_directories(cache, failed);
   if (failed)
     throw InputError(fmt::format("{}: {}; give another folder by --cache", cache.string(), failed.message()));
   Image images[2];
+  const SceneFacts facts = facts_of(scene);
+  std::optional<PreparedScene> prepared;
+  RenderOptions options = request.options;
   for (int i = 0; i < 2; ++i) {
     options.seed = reference_seeds[i];
-    const std::string key = film_key(scene, options);
+    const std::string key = make_job(facts, options, request.fault).key;
     const auto file =
         cache / fmt::format("{}-{}x{}-{}.film", scene.name, options.width, options.height, "AB"[i]);
     std::optional<Film> film = kept_film(file, key);
     if (!film || film->samples[0].count < options.spp) {
       const auto tell = [&](const Progress& now) { return progress(i, now), true; };
-      film = render(scene, options, tell, film ? &*film : nullptr).film;
+      if (!prepared) prepared = prepare(scene, request);
+      film = render(*prepared, options, tell, film ? &*film : nullptr).film;
       write_film(file, *film);
     }
     images[i] = film->image();

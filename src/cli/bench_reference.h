@@ -6,6 +6,7 @@
 
 #include "bench/noise_free.h"
 #include "castray/render.h"
+#include "cli/render_flags.h"
 
 namespace castray::cli {
 
@@ -16,7 +17,8 @@ ReferencePair read_references(const std::string& text, const std::string& scene_
 /// Two references with seeds that no measurement uses, rendered with `options` (their seed is not read) and
 /// kept as films in `cache`; what is there already is not rendered again, and a film with fewer samples is
 /// carried on. `progress` is told the number of the reference, 0 or 1.
-ReferencePair cached_references(const Scene& scene, RenderOptions options, const std::filesystem::path& cache,
+ReferencePair cached_references(const Scene& scene, const RenderRequest& request,
+                                const std::filesystem::path& cache,
                                 const std::function<void(int, const Progress&)>& progress);
 
 }  // namespace castray::cli

@@ -3,11 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 #include <sstream>
 
 #include "castray/error.h"
 #include "cli/process.h"
-#include "cli/render_flags.h"
 #include "cli/shell_word.h"
 #include "cli/temporary_folder.h"
 #include "core/nearest.h"
@@ -58,7 +59,7 @@ Configuration split_configuration(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-RenderOptions configured_options(const Scene& scene, const std::string& flags) {
+RenderRequest configured_request(const Scene& scene, const std::string& flags) {
   RenderRequest request;
   apply_defaults(request, scene);
   std::istringstream words(flags);
@@ -68,7 +69,7 @@ RenderOptions configured_options(const Scene& scene, const std::string& flags) {
     if (flag.metavar && !(words >> value)) throw InputError(fmt::format("--{} needs a value", flag.name));
     flag.set(request, flag.name, value);
   }
-  return request.options;
+  return request;
 }
 
 void parse_size(const std::string& text, int& width, int& height) {
@@ -83,15 +84,17 @@ void parse_size(const std::string& text, int& width, int& height) {
 
 Contender configuration_contender(const ConfiguredRender& where, const Configuration& configuration,
                                   ContenderKind kind) {
-  RenderOptions options = configured_options(where.scene, configuration.flags);
-  options.width = where.width;
-  options.height = where.height;
-  if (where.threads > 0) options.threads = where.threads;
+  RenderRequest request = configured_request(where.scene, configuration.flags);
+  request.options.width = where.width;
+  request.options.height = where.height;
+  if (where.threads > 0) request.options.threads = where.threads;
+  const auto prepared = std::make_shared<std::optional<PreparedScene>>();  // by the first render
   const auto render_one = [=, flags = configuration.flags](std::uint64_t spp, std::uint64_t seed) {
-    RenderOptions now = options;
+    RenderOptions now = request.options;
     now.spp = spp;
     now.seed = seed;
-    const RenderResult result = render(where.scene, now);
+    if (!*prepared) *prepared = prepare(where.scene, request);
+    const RenderResult result = render(**prepared, now);
     Rendering rendering{result.film.image(), result.stats.render_seconds, {}};
     if (seed == 1 && kind == ContenderKind::configuration)
       rendering.process_seconds = whole_process_seconds(where, flags, spp, seed);

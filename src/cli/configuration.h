@@ -5,6 +5,7 @@
 
 #include "bench/measure.h"
 #include "castray/render.h"
+#include "cli/render_flags.h"
 
 namespace castray::cli {
 
@@ -14,9 +15,9 @@ struct Configuration {
 };
 Configuration split_configuration(const std::string& text);
 
-/// The options of the scene's "render" section and then of `flags`, a text as on the command line. Throws
+/// The request of the scene's "render" section and then of `flags`, a text as on the command line. Throws
 /// InputError as `castray render` would, and for flags that a benchmark decides itself.
-RenderOptions configured_options(const Scene& scene, const std::string& flags);
+RenderRequest configured_request(const Scene& scene, const std::string& flags);
 
 /// "WxH", as --size takes it.
 void parse_size(const std::string& text, int& width, int& height);

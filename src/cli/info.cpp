@@ -13,7 +13,8 @@
 #include "core/text.h"
 #include "geometry/build_quality.h"
 #include "materials/descriptor.h"
-#include "render/plan.h"
+#include "plan/job.h"
+#include "plan/plan.h"
 
 namespace castray::cli {
 
@@ -92,7 +93,7 @@ void print_materials(const Scene& scene) {
 
 /// What a render with default flags would choose.
 void print_plan(const Scene& scene) {
-  const Plan plan = make_plan(scene, {});
+  const Plan plan = make_plan(scene, {}, window_of(scene.width, scene.height, {}));
   fmt::print("kernel     {}\n", plan.kernel);
   if (!plan.list) fmt::print("tree       build {}\n", name_of(plan.build));
   fmt::print("skipped    {}\n", fmt::join(plan.skipped, ", "));

@@ -102,9 +102,10 @@ RenderResult render_watched(const Scene& scene, const RenderRequest& request) {
     }
     return !interrupted();
   };
+  const PreparedScene prepared = prepare(scene, request);
   RenderResult result = request.replicates
-                            ? render_replicates(scene, request.options, request.replicates, watch)
-                            : render(scene, request.options, watch, start.get());
+                            ? render_replicates(prepared, request.options, request.replicates, watch)
+                            : render(prepared, request.options, watch, start.get());
   display.finish();
   return result;
 }

@@ -9,6 +9,7 @@
 #include "cli/values.h"
 #include "core/nearest.h"
 #include "core/text.h"
+#include "render/prepared_scene.h"
 
 namespace castray::cli {
 
@@ -118,7 +119,8 @@ const RenderFlag flags[] = {
     {"fov", "DEGREES", "vertical field of view [40]", view,
      [](Request r, Text f, Text t) { r.camera.fov = parse_number(f, t); }, false},
 
-    {"integrator", "wavefront|reference", "the fast one, or the recursive castRay [wavefront]", estimator,
+    {"integrator", "wavefront|reference",
+     "the fast one, or the recursive castRay [wavefront; with --epsilon reference]", estimator,
      [](Request r, Text f, Text t) {
        r.options.integrator = parse_choice<Integrator>(
            f, t, {{"wavefront", Integrator::wavefront}, {"reference", Integrator::reference}});
@@ -155,15 +157,15 @@ const RenderFlag flags[] = {
      }},
     {"fault", "NAME", "show a classic fault (docs/classic-faults.md) on the reference", estimator,
      [](Request r, Text f, Text t) {
-       r.options.fault = parse_choice<Fault>(f, t,
-                                             {{"none", Fault::none},
-                                              {"black-light", Fault::black_light},
-                                              {"vanishing-boxes", Fault::vanishing_boxes},
-                                              {"white-specks", Fault::white_specks},
-                                              {"slow-random", Fault::slow_random},
-                                              {"skewed-light", Fault::skewed_light},
-                                              {"no-light-choice", Fault::no_light_choice},
-                                              {"shared-counter", Fault::shared_counter}});
+       r.fault = parse_choice<Fault>(f, t,
+                                     {{"none", Fault::none},
+                                      {"black-light", Fault::black_light},
+                                      {"vanishing-boxes", Fault::vanishing_boxes},
+                                      {"white-specks", Fault::white_specks},
+                                      {"slow-random", Fault::slow_random},
+                                      {"skewed-light", Fault::skewed_light},
+                                      {"no-light-choice", Fault::no_light_choice},
+                                      {"shared-counter", Fault::shared_counter}});
      }},
 
     {"threads", "N", "[the processors allowed to this process, cgroup limits read]", machine,
@@ -239,6 +241,10 @@ void apply_defaults(RenderRequest& request, const Scene& scene) {
       throw InputError(given.place, error.what());
     }
   }
+}
+
+PreparedScene prepare(const Scene& scene, const RenderRequest& request) {
+  return PreparedAccess::prepare(scene, request.options, request.fault);
 }
 
 Camera camera_of(const CameraFlags& given, Scene& scene) {

@@ -9,6 +9,7 @@
 #include "castray/image.h"
 #include "castray/render.h"
 #include "castray/scene.h"
+#include "plan/fault.h"
 
 namespace castray::cli {
 
@@ -24,6 +25,7 @@ struct CameraFlags {
 struct RenderRequest {
   RenderOptions options;
   CameraFlags camera;
+  Fault fault = Fault::none;
   Display display;
   std::vector<std::filesystem::path> outputs;
   std::optional<std::filesystem::path> checkpoint, stats;
@@ -47,6 +49,9 @@ std::span<const RenderFlag> render_flags();
 
 /// Sets what a scene's "render" section says. Throws InputError with its place.
 void apply_defaults(RenderRequest& request, const Scene& scene);
+
+/// The scene made ready for the request.
+PreparedScene prepare(const Scene& scene, const RenderRequest& request);
 
 /// The scene's camera, or the one that the flags describe. `image_width` and `image_height` are final.
 Camera camera_of(const CameraFlags& flags, Scene& scene);

@@ -61,7 +61,7 @@ class SceneBench {
  private:
   /// Also decides the size: --size, else that of the given references, else the scene's.
   ReferencePair references(BenchScene& result) {
-    RenderOptions options = configured_options(scene_, flags_.reference_flags);
+    RenderRequest request = configured_request(scene_, flags_.reference_flags);
     result.width = scene_.width;
     result.height = scene_.height;
     if (!flags_.size.empty()) parse_size(flags_.size, result.width, result.height);
@@ -74,13 +74,13 @@ class SceneBench {
       result.reference = flags_.reference;
       return pair;
     }
-    options.width = result.width;
-    options.height = result.height;
-    options.spp = flags_.reference_spp;
-    options.threads = flags_.threads;
+    request.options.width = result.width;
+    request.options.height = result.height;
+    request.options.spp = flags_.reference_spp;
+    request.options.threads = flags_.threads;
     result.reference = fmt::format("castray {}, 2 x {} spp", flags_.reference_flags, flags_.reference_spp);
     return cached_references(
-        scene_, options, flags_.cache.empty() ? default_cache() : std::filesystem::path(flags_.cache),
+        scene_, request, flags_.cache.empty() ? default_cache() : std::filesystem::path(flags_.cache),
         [&](int number, const Progress& progress) {
           meter_.tell_part(fmt::format("{} reference {} of 2", scene_.name, number + 1), progress.fraction);
         });

@@ -74,6 +74,13 @@ inline constexpr uint32_t first_capped_vertex = 1000;
 
 // Choices that depend on the scene.
 
+/// Kernels are compiled for sets of these; what a scene does not need is not in its kernel.
+enum KernelFeature : uint32_t {
+  feature_bvh = 1,        ///< a tree instead of a flat list
+  feature_materials = 2,  ///< other than diffuse
+  feature_detail = 4,     ///< textures and smooth normals
+};
+
 /// Up to so many triangles a flat list is faster than a tree.
 inline constexpr uint32_t longest_list = 64;
 /// Light and BSDF sampling are combined where emitters cover more than this part of the scene's surface:

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "castray/render.h"
+#include "castray/render_options.h"
 #include "core/contract.h"
 
 namespace castray {

@@ -1,5 +1,8 @@
 #include "core/text.h"
 
+#include <algorithm>
+#include <charconv>
+
 namespace castray {
 
 std::string printable(std::string_view text, std::size_t longest) {
@@ -7,6 +10,34 @@ std::string printable(std::string_view text, std::size_t longest) {
   for (char& c : result)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   if (text.size() > longest) result += "...";
+  return result;
+}
+
+std::string escape_item(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f || c == '%' || c == ';' || c == '=')
+      result += {'%', digits[byte >> 4], digits[byte & 15]};
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::string unescape_item(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    const char* const end = text.data() + std::min(i + 3, text.size());
+    if (text[i] == '%' && std::from_chars(text.data() + i + 1, end, byte, 16).ptr == text.data() + i + 3) {
+      result += static_cast<char>(byte);
+      i += 2;
+    } else {
+      result += text[i];
+    }
+  }
   return result;
 }
 

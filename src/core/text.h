@@ -11,4 +11,9 @@ std::string printable(std::string_view text, std::size_t longest = 80);
 /// `text` without a UTF-8 byte order mark in front.
 std::string_view without_bom(std::string_view text);
 
+/// `text` as the value of a "name=value" item in a list of items separated by "; ": '%', ';', '=' and control
+/// characters as "%XX". And back.
+std::string escape_item(std::string_view text);
+std::string unescape_item(std::string_view text);
+
 }  // namespace castray

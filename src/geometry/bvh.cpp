@@ -1,5 +1,7 @@
 #include "geometry/bvh.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "geometry/bvh_build.h"
@@ -7,6 +9,11 @@
 #include "geometry/triangle.h"
 
 namespace castray {
+
+std::string to_string(const BvhStats& b) {
+  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s", b.triangles,
+                     b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds);
+}
 
 Bvh Bvh::build(const MeshView& mesh, int threads) {
   const auto start = std::chrono::steady_clock::now();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "geometry/bvh_node.h"
 #include "geometry/ray.h"
@@ -16,6 +17,8 @@ struct BvhStats {
   std::uint64_t bytes = 0;  ///< held by the tree; the mesh itself is borrowed
   double seconds = 0;
 };
+/// "BVH: 32 triangles, 19 nodes, depth 5, ..."
+std::string to_string(const BvhStats& stats);
 
 /// A binary bounding volume hierarchy over a mesh that must outlive it. Never changes once built. Its answers
 /// are those of TriangleList, bit for bit.

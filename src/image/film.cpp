@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "castray/error.h"
+#include "core/text.h"
 #include "core/two_sum.h"
 
 namespace castray {
@@ -172,7 +173,8 @@ Metadata describe(const Film& film) {
   Metadata metadata{{"castray:options", film.key}};
   for (const std::string& item : items_of(film.key)) {
     for (const std::string name : {"scene", "seed"})
-      if (item.starts_with(name + "=")) metadata["castray:" + name] = item.substr(name.size() + 1);
+      if (item.starts_with(name + "="))
+        metadata["castray:" + name] = unescape_item(std::string_view(item).substr(name.size() + 1));
     if (item.starts_with("clamp-indirect=")) metadata["castray:biased"] = item;
   }
   std::uint64_t spp = 0;

@@ -2,15 +2,26 @@
 
 #include <cstdint>
 
-#include "castray/render.h"
-#include "core/sequences.h"
+#include "castray/render_options.h"
 #include "lights/area_lights.h"
+#include "plan/plan.h"
 #include "reference/estimator.h"
-#include "reference/faults.h"
 #include "reference/segments.h"
 #include "reference/surface.h"
+#include "reference/textbook.h"
 
 namespace castray {
+
+/// A scene as castRay sees it; the scene must outlive it.
+template <class T>
+struct SceneParts {
+  explicit SceneParts(const Scene& s) : scene(s), surfaces(s), lights(s), environment(s.environment) {}
+
+  const Scene& scene;
+  Surfaces<T> surfaces;
+  AreaLights<T> lights;
+  Vec3<T> environment;
+};
 
 /// The recursive path tracer, to be held against the rendering equation (Kajiya 1986)
 ///
@@ -23,14 +34,16 @@ template <class T, class Accel>
 class CastRay {
  public:
   /// All references must outlive this object. Const and shared by threads.
-  CastRay(const Scene& scene, const Accel& accel, const RenderOptions& options)
-      : scene_(scene),
-        options_(options),
+  CastRay(const SceneParts<T>& parts, const Accel& accel, const Textbook<T>& textbook,
+          const RenderOptions& options)
+      : scene_(parts.scene),
+        surfaces_(parts.surfaces),
+        lights_(parts.lights),
+        environment_(parts.environment),
         accel_(accel),
-        surfaces_(scene),
-        lights_(scene),
+        textbook_(textbook),
+        options_(options),
         segments_{options.epsilon},
-        environment_(scene.environment),
         mis_(uses_mis(options.mis, lights_.share_of_surface())) {}
 
   /// Radiance of one camera sample of pixel (x,y) of a width x height image; adds the rays traced to `rays`.
@@ -40,9 +53,8 @@ class CastRay {
     const double jitter_x = options_.jitter ? u[0] : 0.5, jitter_y = options_.jitter ? u[1] : 0.5;
     path.light_u = {T(u[2]), T(u[3])};
     const Vec3d direction = scene_.camera.direction(x + jitter_x, y + jitter_y, width, height);
-    const bool sees_light = options_.fault != Fault::black_light;
     const Vec3<T> radiance = cast_ray({Vec3<T>(scene_.camera.position), Vec3<T>(normalize(direction))}, path,
-                                      sees_light ? Arrival::whole() : Arrival::none());
+                                      textbook_.camera_sees_emitters() ? Arrival::whole() : Arrival::none());
     rays += path.rays;
     return radiance;
   }
@@ -68,8 +80,7 @@ class CastRay {
   };
 
   std::array<float, 4> draw(const Path& path, std::uint32_t block) const {
-    if (options_.fault == Fault::slow_random) return draw_from_new_engines();
-    return sample_block(options_.sampler, path.key, path.sample, block);
+    return textbook_.draw(path.key, path.sample, block);
   }
 
   /// L: radiance that arrives at the ray's origin against its direction (of unit length).
@@ -105,10 +116,7 @@ class CastRay {
   /// Integral over the emitters: f Le cos cos' / |x' - x|^2 V / density, at one point x'.
   Vec3<T> direct_light(const Surface<T>& x, Path& path, double u_choice) const {
     if (lights_.empty()) return {};
-    if (options_.fault == Fault::skewed_light) u_choice = std::sqrt(u_choice);
-    const LightPoint<T> y = lights_.sample(u_choice, path.light_u);
-    const T pdf_area = options_.fault == Fault::no_light_choice ? y.pdf_area / y.choice : y.pdf_area;
-
+    const LightPoint<T> y = textbook_.sample_light(lights_, u_choice, path.light_u);
     const Vec3<T> segment = y.p - x.p;
     const T distance2 = dot(segment, segment);
     const Vec3<T> wi = segment / std::sqrt(distance2);
@@ -116,10 +124,10 @@ class CastRay {
     const T facing = -dot(y.normal, wi), cos_light = y.two_sided ? std::abs(facing) : facing;
     if (!(cos_light > 0) || !x.consistent(wi, local) || in_one_plane(x, y, segment)) return {};
 
-    Vec3<T> radiance =
-        x.bsdf.evaluate(x.wo, local) * y.radiance * (std::abs(local.z) * cos_light / (distance2 * pdf_area));
+    Vec3<T> radiance = x.bsdf.evaluate(x.wo, local) * y.radiance *
+                       (std::abs(local.z) * cos_light / (distance2 * y.pdf_area));
     if (!(max_component(radiance) > 0)) return {};
-    if (mis_) radiance *= balance(pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
+    if (mis_) radiance *= balance(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
     ++path.rays;
     return segments_.visible(accel_, x, y) ? radiance : Vec3<T>();
   }
@@ -127,10 +135,7 @@ class CastRay {
   /// Integral over the hemisphere of what is not direct light: f cos / pdf L, in one direction.
   Vec3<T> indirect_light(const Surface<T>& x, Path& path, T u_roulette, T u_lobe) const {
     const std::array<float, 4> u = draw(path, PathBlocks::direction(path.vertex));
-    const Point2<T> u_direction{T(u[0]), T(u[1])};
-    const BsdfSample<T> sample = options_.fault == Fault::white_specks
-                                     ? sample_uniformly(x.bsdf, x.wo, u_direction)
-                                     : x.bsdf.sample(x.wo, u_lobe, u_direction);
+    const BsdfSample<T> sample = textbook_.sample_bsdf(x.bsdf, x.wo, u_lobe, {T(u[0]), T(u[1])});
     if (!sample.valid()) return sample.weight;
     const Vec3<T> wi = x.frame.to_world(sample.wi);
     if (!x.consistent(wi, sample.wi)) return {};
@@ -154,12 +159,13 @@ class CastRay {
   }
 
   const Scene& scene_;
-  const RenderOptions& options_;
-  const Accel& accel_;
-  Surfaces<T> surfaces_;
-  AreaLights<T> lights_;
-  Segments<T> segments_;
+  const Surfaces<T>& surfaces_;
+  const AreaLights<T>& lights_;
   Vec3<T> environment_;
+  const Accel& accel_;
+  const Textbook<T>& textbook_;
+  const RenderOptions& options_;
+  Segments<T> segments_;
   bool mis_;
 };
 

@@ -1,22 +1,21 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
-#include "castray/render.h"
-#include "castray/scene.h"
 #include "core/contract.h"
 
 namespace castray {
 
-// The estimator's contract, kept by every integrator (cast_ray.h spells it out in code):
+// The estimator, the same in every integrator (cast_ray.h spells it out in code):
 //
 // * Vertex k = 0, 1, ... of a path is its k-th hit, reached by k + 1 edges. Random numbers are those of
 //   PathBlocks, in the order given there.
-// * Emission found by a ray counts wholly if the ray is the camera's or left a perfectly specular lobe;
-//   otherwise light sampling has it, and it counts 0, or its share where multiple importance sampling is on.
-// * At each vertex one light point is drawn (AreaLights) and weighed by BSDF, cosines, distance, visibility.
-// * The environment is never sampled as a light: a ray that escapes adds all of it.
-// * One direction is drawn from the BSDF; then roulette; then the next vertex.
+// * Emission that a ray hits counts in full if the ray is the camera's or was sampled from a perfectly
+//   specular lobe. Otherwise light sampling accounts for it: it counts 0, or by its MIS weight.
+// * At each vertex one light point is sampled (AreaLights).
+// * The environment is not sampled as a light: a ray that escapes adds its full radiance.
+// * One direction is sampled from the BSDF; then Russian roulette; then the next vertex.
 
 /// The probability that a path goes on from `vertex`. `brightest` is the largest component of its throughput,
 /// the next segment's weight included and the radiance scale of refractions taken out.
@@ -31,15 +30,11 @@ T survival_probability(const std::optional<double>& fixed, std::uint32_t vertex,
   return brightest < cap ? brightest : cap;
 }
 
-/// Share of the technique of density `own` where another of density `other` finds the same path (balance
-/// heuristic, Veach and Guibas 1995).
+/// MIS weight, by the balance heuristic (Veach and Guibas 1995), of a technique with pdf `own` where another
+/// one samples the same path with pdf `other`.
 template <class T>
 T balance(T own, T other) {
   return own / (own + other);
 }
-
-/// Whether the reference combines light and BSDF sampling: as asked, or automatically where emitters cover
-/// so much of the scene that light points next to the shaded point would dominate the variance.
-bool uses_mis(Switch mis, double emitting_share_of_surface);
 
 }  // namespace castray

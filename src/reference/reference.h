@@ -1,12 +1,13 @@
 #pragma once
 
-#include "castray/render.h"
+#include <memory>
+
+#include "plan/integrator.h"
 
 namespace castray {
 
-/// Renders with castRay (cast_ray.h), in float or double, over a BVH or a list; shows the classic faults
-/// where asked. Options are taken as checked by `render`.
-RenderResult render_reference(const Scene& scene, const RenderOptions& options,
-                              const ProgressCallback& progress, const Film* start);
+/// castRay (cast_ray.h), in float or double, over a BVH or a list; shows the classic faults where asked. The
+/// scene must outlive it.
+std::unique_ptr<const PreparedIntegrator> prepare_reference(const Scene& scene, const Job& job);
 
 }  // namespace castray

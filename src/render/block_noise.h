@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "castray/film.h"
-#include "render/sample_map.h"
+#include "plan/sample_map.h"
 
 namespace castray {
 

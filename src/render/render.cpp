@@ -2,104 +2,90 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-
 #include "castray/error.h"
-#include "reference/reference.h"
+#include "render/prepared_scene.h"
 #include "render/row_loop.h"
-#include "wavefront/wavefront.h"
+#include "render/take_samples.h"
 
 namespace castray {
 
 namespace {
 
-void require(bool condition, const std::string& message) {
-  if (!condition) throw InputError(message);
+/// The name of an option in which `job` differs from the one that a scene was prepared for; or null.
+const char* misfit(const Job& job, const Job& prepared) {
+  const RenderOptions &a = job.options, &b = prepared.options;
+  if (job.window.full_width != prepared.window.full_width ||
+      job.window.full_height != prepared.window.full_height)
+    return "--size";
+  if (a.integrator != b.integrator) return "--integrator";
+  if (a.precision != b.precision) return "--precision";
+  if (a.epsilon != b.epsilon) return "--epsilon";
+  if (a.lights != b.lights) return "--lights";
+  if (a.mis != b.mis) return "--mis";
+  if (a.isa != b.isa) return "--isa";
+  if (a.accel != b.accel) return "--accel";
+  if (a.build != b.build) return "--build";
+  if (a.generic != b.generic) return "--generic";
+  if (a.reuse != b.reuse) return "--reuse";
+  return nullptr;
 }
 
-void check_image(const Window& w) {
-  require(w.full_width >= 1 && w.full_height >= 1 && w.full_width <= max_image_side &&
-              w.full_height <= max_image_side &&
-              static_cast<long long>(w.full_width) * w.full_height <= max_image_pixels,
-          fmt::format("--size {}x{}: each side must be between 1 and {}, and {} pixels in all at most",
-                      w.full_width, w.full_height, max_image_side, max_image_pixels));
-  require(
-      0 <= w.x0 && w.x0 < w.x1 && w.x1 <= w.full_width && 0 <= w.y0 && w.y0 < w.y1 && w.y1 <= w.full_height,
-      fmt::format("--crop {},{},{},{}: must be X0,Y0,X1,Y1 with 0 <= X0 < X1 <= {} and 0 <= Y0 < Y1 <= {}",
-                  w.x0, w.y0, w.x1, w.y1, w.full_width, w.full_height));
-}
-
-void check_samples(const SampleRange& samples) {
-  constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
-  require(samples.count >= 1 && samples.count <= most,
-          fmt::format("{} samples per pixel: must be between 1 and {}", samples.count, most));
-  require(samples.first <= std::numeric_limits<std::uint64_t>::max() - samples.count,
-          fmt::format("--samples {}:{}: the last index is beyond 2^64", samples.first, samples.count));
-}
-
-void check_numbers(const RenderOptions& o) {
-  const auto positive = [](const char* flag, const std::optional<double>& value) {
-    require(!value || (std::isfinite(*value) && *value > 0),
-            fmt::format("--{} {}: must be a number above 0", flag, value.value_or(0)));
-  };
-  require(!o.rr || (*o.rr > 0 && *o.rr <= 1),
-          fmt::format("--rr {}: must be auto or in (0,1]", o.rr.value_or(0)));
-  require(o.max_depth >= 0, "--max-depth: must be none or at least 1");
-  require(o.threads >= 0 && o.threads <= 4096,
-          fmt::format("--threads {}: must be between 1 and 4096", o.threads));
-  positive("epsilon", o.epsilon);
-  positive("clamp-indirect", o.clamp_indirect);
-  positive("time-limit", o.time_limit);
-  positive("target-error", o.target_error);
-}
-
-/// A target error decides how many samples there are, and which.
-void check_target(const RenderOptions& o, const Film* start) {
-  if (!o.target_error) return;
-  require(!o.samples, "--target-error: cannot go with --samples; leave one out");
-  require(o.fault == Fault::none, "--target-error: cannot go with --fault; give --spp");
-  require(!start, "--target-error: cannot go on from an earlier film; leave out the target or the film");
-}
-
-/// What castRay does not have is refused, never ignored.
-void check_reference(const RenderOptions& o) {
-  require(o.lights == LightSampling::automatic || o.lights == LightSampling::area,
-          "--lights: the reference integrator samples lights by area only; leave it at auto");
-  require(o.reuse.automatic || o.reuse.width == 0,
-          "--reuse: the reference integrator shares no paths; leave it at auto or off");
-  require(o.isa == "auto" || o.isa == "scalar",
-          fmt::format("--isa {}: the reference integrator has no vector kernels; leave it at auto", o.isa));
-}
-
-void check_wavefront(const RenderOptions& o) {
-  require(o.fault == Fault::none, "--fault: only the reference shows the faults; add --integrator reference");
-  require(o.precision == Precision::float32,
-          "--precision double: only the reference; add --integrator reference");
-  const Reuse& r = o.reuse;
-  require(r.automatic || r.width == 0 ||
-              (r.width == 8 && r.height == 8 && r.suffixes >= 1 && r.suffixes <= 64 &&
-               (r.suffixes & (r.suffixes - 1)) == 0),
-          fmt::format("--reuse {}x{}:{}: tiles are 8x8, with a power of two of suffixes up to 64", r.width,
-                      r.height, r.suffixes));
+SampleRange first_range(const RenderOptions& options, std::uint64_t replicates) {
+  if (options.samples) return *options.samples;
+  if (options.spp % replicates != 0)
+    throw InputError(
+        fmt::format("--spp {}: must be a multiple of the {} replicates", options.spp, replicates));
+  return {0, options.spp / replicates};
 }
 
 }  // namespace
 
+RenderResult render(const PreparedScene& scene, const RenderOptions& options,
+                    const ProgressCallback& progress, const Film* start) {
+  const PreparedAccess::Data& prepared = PreparedAccess::data(scene);
+  const Job job = make_job(prepared.facts, options, prepared.job.fault);
+  if (const char* option = misfit(job, prepared.job))
+    throw InputError(fmt::format("{}: the scene was prepared for another one; prepare it anew", option));
+  if (options.target_error && start)
+    throw InputError("--target-error: cannot go on from an earlier film; leave out the target or the film");
+  RenderResult result = take_samples(job, progress, start, prepared.integrator->work(job));
+  prepared.integrator->describe(result.stats);
+  return result;
+}
+
 RenderResult render(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
                     const Film* start) {
-  check_image(window_of(scene, options));
-  check_samples(samples_of(options));
-  check_numbers(options);
-  check_target(options, start);
-  require(!scene.triangles.empty(), fmt::format("{}: the scene has no triangle", scene.file.string()));
-  // the classic epsilon lives in the reference alone
-  if (options.integrator == Integrator::wavefront && !options.epsilon) {
-    check_wavefront(options);
-    return render_wavefront(scene, options, progress, start);
+  return render(PreparedScene(scene, options), options, progress, start);
+}
+
+RenderResult render_replicates(const PreparedScene& scene, const RenderOptions& options,
+                               std::uint64_t replicates, const ProgressCallback& progress) {
+  const SampleRange range = first_range(options, replicates);
+  if (range.first % replicate_length + range.count > replicate_length)
+    throw InputError(fmt::format("--replicates: each may hold {} samples at most", replicate_length));
+  RenderResult whole;
+  for (std::uint64_t r = 0; r < replicates; ++r) {
+    RenderOptions part_options = options;
+    part_options.samples = SampleRange{range.first + r * replicate_length, range.count};
+    RenderResult part = render(scene, part_options, [&](const Progress& p) {
+      const double fraction = (static_cast<double>(r) + p.fraction) / static_cast<double>(replicates);
+      return !progress || progress({fraction, whole.stats.paths + p.paths, nullptr});
+    });
+    part.film.keep_replicates();
+    add_stats(part.stats, whole.stats);
+    whole.stats = part.stats;
+    if (r == 0)
+      whole.film = std::move(part.film);
+    else if (part.stats.stopped == Stopped::done)
+      whole.film.merge(part.film);
+    if (part.stats.stopped != Stopped::done) break;
   }
-  check_reference(options);
-  return render_reference(scene, options, progress, start);
+  return whole;
+}
+
+RenderResult render_replicates(const Scene& scene, const RenderOptions& options, std::uint64_t replicates,
+                               const ProgressCallback& progress) {
+  return render_replicates(PreparedScene(scene, options), options, replicates, progress);
 }
 
 }  // namespace castray

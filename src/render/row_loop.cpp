@@ -6,12 +6,11 @@
 #include <atomic>
 #include <bit>
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <tuple>
 
 #include "castray/error.h"
-#include "core/threads.h"
-#include "render/film_key.h"
 
 namespace castray {
 
@@ -56,30 +55,46 @@ std::vector<std::uint64_t> finished_samples(const Film& film, const Passes& pass
   return finished;
 }
 
-double brightest_emission(const Scene& scene) {
-  double brightest = max_component(scene.environment);
-  for (const Material& material : scene.materials)
-    brightest = std::max(brightest, max_component(material.ke));
-  return brightest;
-}
+/// Runs code in threads that no exception may leave, and keeps the first one for the thread that waits.
+class ExceptionKeeper {
+ public:
+  template <class Work>
+  void run(Work work) noexcept {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!first_) first_ = std::current_exception();
+      any_ = true;
+    }
+  }
+  bool any() const { return any_; }
+  void rethrow() const {
+    if (first_) std::rethrow_exception(first_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr first_;
+  std::atomic<bool> any_ = false;
+};
 
 /// The state of one run, shared by its threads.
 class RowLoop {
  public:
-  RowLoop(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-          const Film* start, const SampleMap& map)
-      : options_(options),
+  RowLoop(const Job& job, const ProgressCallback& progress, const Film* start, const SampleMap& map)
+      : time_limit_(job.options.time_limit),
         progress_(progress),
         map_(map),
-        window_(window_of(scene, options)),
+        window_(job.window),
         samples_(map.range()),
         passes_(samples_.count,
                 static_cast<std::uint64_t>(window_.width()) * static_cast<std::uint64_t>(window_.height())) {
-    result_.film = Film(window_, brightest_emission(scene));
-    result_.film.key = film_key(scene, options);
+    result_.film = Film(window_, job.brightest);
+    result_.film.key = job.key;
     finished_.resize(static_cast<std::size_t>(window_.height()));
     if (start) resume(*start);
-    result_.stats.threads = thread_count(options);
+    result_.stats.threads = job.threads;
     for (int y = window_.y0; y < window_.y1; ++y)
       paths_ += map_.total(y, y + 1, {samples_.first, *row_of(y)});
     paths_before_ = paths_;
@@ -123,20 +138,25 @@ class RowLoop {
   void run_pass(std::uint64_t end, const BandWork& work) {
     const int bands = (window_.height() + work.height - 1) / work.height + (work.overlap ? 1 : 0);
     const std::uint64_t begin = finished_.front();  // of all rows, where bands overlap
+    ExceptionKeeper keeper;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(result_.stats.threads)
-    for (int band = 0; band < bands; ++band) {
-      const int y0 = window_.y0 + band * work.height, y1 = std::min(y0 + work.height, window_.y1);
-      const std::uint64_t done = work.overlap ? begin : finished_[static_cast<std::size_t>(y0 - window_.y0)];
-      if (done >= end || (stopped_ && !work.overlap)) continue;
-      RowStats stats;
-      const SampleRange samples{samples_.first + done, end - done};
-      work.render(y0, y1, samples, map_, result_.film, stats);
-      if (!work.overlap) std::fill(row_of(y0), row_of(y1), end);
-      paths_ += map_.total(y0, y1, samples);
-      add(stats);
-      report(nullptr);
-    }
+    for (int band = 0; band < bands; ++band)
+      if (!keeper.any()) keeper.run([&] { run_band(band, begin, end, work); });
+    keeper.rethrow();
     if (work.overlap) std::fill(finished_.begin(), finished_.end(), std::max(begin, end));
+  }
+
+  void run_band(int band, std::uint64_t begin, std::uint64_t end, const BandWork& work) {
+    const int y0 = window_.y0 + band * work.height, y1 = std::min(y0 + work.height, window_.y1);
+    const std::uint64_t done = work.overlap ? begin : *row_of(y0);
+    if (done >= end || (stopped_ && !work.overlap)) return;
+    RowStats stats;
+    const SampleRange samples{samples_.first + done, end - done};
+    work.render(y0, y1, samples, map_, result_.film, stats);
+    if (!work.overlap) std::fill(row_of(y0), row_of(y1), end);
+    paths_ += map_.total(y0, y1, samples);
+    add(stats);
+    report(nullptr);
   }
 
   std::vector<std::uint64_t>::iterator row_of(int y) { return finished_.begin() + (y - window_.y0); }
@@ -159,7 +179,7 @@ class RowLoop {
     const std::unique_lock lock(reporting_, std::try_to_lock);
     if (!lock) return;
     const double now = seconds();
-    if (options_.time_limit && now >= *options_.time_limit) stop(Stopped::time_limit);
+    if (time_limit_ && now >= *time_limit_) stop(Stopped::time_limit);
     if (!progress_ || (!film && now < last_report_ + seconds_between_reports)) return;
     last_report_ = now;
     const std::uint64_t paths = paths_;
@@ -180,7 +200,7 @@ class RowLoop {
     if (most > 0) result_.film.samples.push_back({samples_.first, most});
   }
 
-  const RenderOptions& options_;
+  std::optional<double> time_limit_;  ///< seconds
   const ProgressCallback& progress_;
   const SampleMap& map_;
   Window window_;
@@ -201,32 +221,12 @@ class RowLoop {
 
 }  // namespace
 
-Window window_of(const Scene& scene, const RenderOptions& options) {
-  const int width = options.width > 0 ? options.width : scene.width;
-  const int height = options.height > 0 ? options.height : scene.height;
-  Window window{width, height, 0, 0, width, height};
-  if (options.crop) {
-    window.x0 = options.crop->x0, window.y0 = options.crop->y0;
-    window.x1 = options.crop->x1, window.y1 = options.crop->y1;
-  }
-  return window;
-}
-
-int thread_count(const RenderOptions& options) {
-  return options.threads > 0 ? options.threads : available_threads();
-}
-
-SampleRange samples_of(const RenderOptions& options) {
-  return options.samples ? *options.samples : SampleRange{0, options.spp};
-}
-
-RenderResult run_rows(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-                      const Film* start, const SampleMap& map, const BandWork& work) {
-  return RowLoop(scene, options, progress, start, map).run(work);
+RenderResult run_rows(const Job& job, const ProgressCallback& progress, const Film* start,
+                      const SampleMap& map, const BandWork& work) {
+  return RowLoop(job, progress, start, map).run(work);
 }
 
 void add_stats(RenderStats& sum, const RenderStats& earlier) {
-  sum.bvh_seconds += earlier.bvh_seconds;
   sum.render_seconds += earlier.render_seconds;
   sum.paths += earlier.paths;
   sum.rays += earlier.rays;

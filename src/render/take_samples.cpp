@@ -22,12 +22,11 @@ constexpr std::uint64_t most_of_image = (last_replicate - 2 * last_round - 1) * 
 
 class TargetRun {
  public:
-  TargetRun(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-            const BandWork& work)
-      : scene_(scene), options_(options), progress_(progress), work_(work) {}
+  TargetRun(const Job& job, const ProgressCallback& progress, const BandWork& work)
+      : job_(job), target_(*job.options.target_error), progress_(progress), work_(work) {}
 
   RenderResult run() {
-    SampleMap pilot(window_of(scene_, options_), {0, first_pilot});
+    SampleMap pilot(job_.window, {0, first_pilot});
     planned_ = 2 * share_aimed_at * pilot.total();
     for (std::uint64_t round = 0;; ++round) {
       for (std::uint64_t side = 0; side < 2; ++side) {
@@ -35,7 +34,7 @@ class TargetRun {
         if (!render_pilot(pilot, side)) return pilots_as_image();
       }
       const BlockNoise noise(pilots_[0], pilots_[1], pilot);
-      const SampleMap plan = noise.plan(*options_.target_error, std::min(options_.spp, most_of_image));
+      const SampleMap plan = noise.plan(target_, std::min(job_.options.spp, most_of_image));
       planned_ = stats_.paths + plan.total();
       if (stats_.paths * share_needed >= plan.total() || round == last_round) return image(noise, plan);
       pilot = longer_pilot(pilot, plan);
@@ -46,11 +45,11 @@ class TargetRun {
  private:
   /// The samples of one map, within what is left of the time. Its statistics are added up.
   RenderResult render(const SampleMap& map) {
-    RenderOptions options = options_;
-    if (options.time_limit) *options.time_limit -= stats_.render_seconds;
+    Job job = job_;
+    if (job.options.time_limit) *job.options.time_limit -= stats_.render_seconds;
     const std::uint64_t before = stats_.paths, pilot_paths = stats_.pilot_paths;
     RenderResult result = run_rows(
-        scene_, options,
+        job,
         [&](const Progress& p) {
           const std::uint64_t paths = before + p.paths;
           const double fraction = static_cast<double>(paths) / static_cast<double>(planned_);
@@ -96,13 +95,13 @@ class TargetRun {
     RenderResult result = render(plan);
     result.film.nonfinite_samples += pilots_[0].nonfinite_samples + pilots_[1].nonfinite_samples;
     result.stats.expected_error = noise.expected_error(result.film);
-    const bool reached = noise.expected_error(plan) <= *options_.target_error;
+    const bool reached = noise.expected_error(plan) <= target_;
     if (result.stats.stopped == Stopped::done && reached) result.stats.stopped = Stopped::target_error;
     return result;
   }
 
-  const Scene& scene_;
-  const RenderOptions& options_;
+  const Job& job_;
+  double target_;  ///< relMSE
   const ProgressCallback& progress_;
   const BandWork& work_;
   Film pilots_[2];
@@ -112,11 +111,10 @@ class TargetRun {
 
 }  // namespace
 
-RenderResult take_samples(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
-                          const Film* start, const BandWork& work) {
-  if (options.target_error) return TargetRun(scene, options, progress, work).run();
-  const SampleMap everything(window_of(scene, options), samples_of(options));
-  return run_rows(scene, options, progress, start, everything, work);
+RenderResult take_samples(const Job& job, const ProgressCallback& progress, const Film* start,
+                          const BandWork& work) {
+  if (job.options.target_error) return TargetRun(job, progress, work).run();
+  return run_rows(job, progress, start, SampleMap(job.window, job.samples), work);
 }
 
 }  // namespace castray

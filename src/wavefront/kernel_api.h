@@ -3,6 +3,7 @@
 #include <stdint.h>
 
 #include "cameras/camera_records.h"
+#include "core/contract.h"
 #include "geometry/geometry_records.h"
 #include "geometry/ray_batches.h"
 #include "lights/light_records.h"
@@ -12,13 +13,6 @@
 // instruction set. Everything is in scene space.
 
 namespace castray {
-
-/// Kernels are compiled for sets of these; what a scene does not need is not in its kernel.
-enum KernelFeature : uint32_t {
-  feature_bvh = 1,        ///< a tree instead of a flat list
-  feature_materials = 2,  ///< other than diffuse
-  feature_detail = 4,     ///< textures and smooth normals
-};
 
 /// What the camera's rays hit, where they are the same for all samples: a table over the pixels from (x0,y0)
 /// on.

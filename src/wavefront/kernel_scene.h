@@ -9,7 +9,7 @@
 #include "geometry/wide_bvh.h"
 #include "lights/light_table.h"
 #include "materials/kernel_materials.h"
-#include "render/plan.h"
+#include "plan/plan.h"
 #include "wavefront/kernel_api.h"
 
 namespace castray {

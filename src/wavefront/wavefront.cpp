@@ -4,15 +4,14 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <new>
 
 #include "core/sequences.h"
 #include "geometry/build_quality.h"
-#include "render/take_samples.h"
 #include "wavefront/choose_kernel.h"
 #include "wavefront/kernel_scene.h"
 
@@ -20,18 +19,20 @@ namespace castray {
 
 namespace {
 
-struct Free {
-  void operator()(void* p) const { std::free(p); }
+/// As kernels ask for it.
+constexpr std::align_val_t scratch_alignment{64};
+struct FreeScratch {
+  void operator()(void* p) const { ::operator delete(p, scratch_alignment); }
 };
 
 /// What a thread works in.
 struct Workplace {
-  std::unique_ptr<void, Free> scratch;
+  std::unique_ptr<void, FreeScratch> scratch;
   std::vector<float> radiance;
   std::vector<std::uint32_t> place;
 
   explicit Workplace(const KernelApi& kernel)
-      : scratch(std::aligned_alloc(64, (kernel.scratch_bytes + 63) / 64 * 64)),
+      : scratch(::operator new(kernel.scratch_bytes, scratch_alignment)),
         radiance(3 * batch_size),
         place(2 * batch_size) {
     std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
@@ -104,23 +105,19 @@ struct TileGrid {
   }
 };
 
-/// Renders a scene tile row by tile row.
-class Wavefront {
+/// One render of a scene, tile row by tile row.
+class WavefrontRun {
  public:
-  Wavefront(const Scene& scene, const RenderOptions& options, const Plan& plan)
-      : kernel_(choose_kernel(options.isa)),
-        window_(window_of(scene, options)),
-        data_(scene, plan, window_.full_width, window_.full_height, thread_count(options)),
-        options_(kernel_options(options, plan)),
-        render_tiles_(kernel_.render_tiles[plan.features]),
+  WavefrontRun(const KernelApi& kernel, const KernelScene& scene, const Plan& plan, const Job& job)
+      : window_(job.window),
+        scene_(scene),
+        options_(kernel_options(job.options, plan)),
+        render_tiles_(kernel.render_tiles[plan.features]),
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
         row_locks_(static_cast<std::size_t>(bands_)) {
-    for (int i = 0; i < thread_count(options); ++i) workplaces_.emplace_back(kernel_);
-    if (!options.jitter) find_first_hits();
+    for (int i = 0; i < job.threads; ++i) workplaces_.emplace_back(kernel);
+    if (!job.options.jitter) find_first_hits();
   }
-
-  const KernelApi& kernel() const { return kernel_; }
-  const KernelSceneData& data() const { return data_; }
 
   /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
   /// bands.
@@ -134,7 +131,7 @@ class Wavefront {
           const TileJob job = grid.job(x, y, s, map);
           x += std::max(job.tiles, 1);
           if (job.tiles == 0) continue;
-          render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
+          render_tiles_(scene_, options_, job, workplace.scratch.get(), result);
           add(job, result, map, film, stats);
         }
     }
@@ -145,7 +142,7 @@ class Wavefront {
   /// All that the tiles of any sample's grid reach.
   void find_first_hits() {
     constexpr int margin = 2 * tile_size;
-    FirstHits& table = data_.view.first_hits;
+    FirstHits& table = scene_.first_hits;
     table.x0 = window_.x0 - margin;
     table.y0 = window_.y0 - margin;
     table.width = window_.width() + 2 * margin;
@@ -165,7 +162,7 @@ class Wavefront {
       TileResult result = workplace.result();
       for (int x = 0; x < table.width; x += max_tiles * tile_size) {
         const TileJob job{table.x0 + x, table.y0 + y, 0, 0, max_tiles, options_.ragged};
-        render_tiles_(data_.view, options_, job, workplace.scratch.get(), result);
+        render_tiles_(scene_, options_, job, workplace.scratch.get(), result);
       }
     }
     table.known = true;
@@ -195,9 +192,8 @@ class Wavefront {
     }
   }
 
-  const KernelApi& kernel_;
   Window window_;
-  KernelSceneData data_;
+  KernelScene scene_;
   KernelOptions options_;
   RenderTiles render_tiles_;
   int bands_;
@@ -207,32 +203,48 @@ class Wavefront {
   std::vector<std::uint32_t> first_primitives_;
 };
 
-std::string accel_summary(const KernelSceneData& data, const Plan& plan, std::size_t triangles) {
-  if (!data.bvh) return fmt::format("list: {} triangles as {} facets", triangles, data.facets.facets.size());
-  const BvhStats& b = data.bvh->stats();
-  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s, build {}",
-                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds, name_of(plan.build));
-}
+class Wavefront final : public PreparedIntegrator {
+ public:
+  Wavefront(const Scene& scene, const Job& job)
+      : plan_(make_plan(scene, job.options, job.window)),
+        kernel_(choose_kernel(job.options.isa)),
+        triangles_(scene.triangles.size()),
+        data_(scene, plan_, job.window.full_width, job.window.full_height, job.threads) {}
+
+  BandWork work(const Job& job) const override {
+    const auto run = std::make_shared<WavefrontRun>(kernel_, data_.view, plan_, job);
+    const int top = job.window.y0;
+    return {
+        tile_size, true,
+        [run, top](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film,
+                   RowStats& stats) { run->render_band((y0 - top) / tile_size, samples, map, film, stats); }};
+  }
+
+  void describe(RenderStats& stats) const override {
+    stats.isa = kernel_.name;
+    stats.kernel = plan_.kernel;
+    stats.skipped = plan_.skipped;
+    if (data_.bvh) stats.bvh_seconds = data_.bvh->stats().seconds;
+    stats.accel_summary = accel_summary();
+  }
+
+ private:
+  std::string accel_summary() const {
+    if (!data_.bvh)
+      return fmt::format("list: {} triangles as {} facets", triangles_, data_.facets.facets.size());
+    return fmt::format("{}, build {}", to_string(data_.bvh->stats()), name_of(plan_.build));
+  }
+
+  Plan plan_;
+  const KernelApi& kernel_;
+  std::size_t triangles_;
+  KernelSceneData data_;
+};
 
 }  // namespace
 
-RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
-                              const ProgressCallback& progress, const Film* start) {
-  const Plan plan = make_plan(scene, options);
-  Wavefront wavefront(scene, options, plan);
-  const Window window = window_of(scene, options);
-  const BandWork work{
-      tile_size, true,
-      [&](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
-        wavefront.render_band((y0 - window.y0) / tile_size, samples, map, film, stats);
-      }};
-  RenderResult result = take_samples(scene, options, progress, start, work);
-  result.stats.isa = wavefront.kernel().name;
-  result.stats.kernel = plan.kernel;
-  result.stats.skipped = plan.skipped;
-  result.stats.accel_summary = accel_summary(wavefront.data(), plan, scene.triangles.size());
-  if (wavefront.data().bvh) result.stats.bvh_seconds = wavefront.data().bvh->stats().seconds;
-  return result;
+std::unique_ptr<const PreparedIntegrator> prepare_wavefront(const Scene& scene, const Job& job) {
+  return std::make_unique<Wavefront>(scene, job);
 }
 
 }  // namespace castray

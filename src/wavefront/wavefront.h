@@ -1,13 +1,15 @@
 #pragma once
 
-#include "castray/render.h"
+#include <memory>
+#include <string>
+
+#include "plan/integrator.h"
 #include "wavefront/kernel_api.h"
 
 namespace castray {
 
-/// The fast integrator: the same expected image as castRay, by kernels that trace whole batches of paths.
-/// Options are taken as checked by `render`.
-RenderResult render_wavefront(const Scene& scene, const RenderOptions& options,
-                              const ProgressCallback& progress, const Film* start);
+/// The fast integrator: the same expected image as castRay, by kernels that trace whole batches of paths. The
+/// scene must outlive it.
+std::unique_ptr<const PreparedIntegrator> prepare_wavefront(const Scene& scene, const Job& job);
 
 }  // namespace castray

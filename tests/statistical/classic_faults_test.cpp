@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/sequences.h"
+#include "render/prepared_scene.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -16,13 +17,12 @@ double brightness(const Image& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-Image image_of(const Scene& scene, const RenderOptions& options) {
-  return render(scene, options).film.image();
+RenderResult render_with(Fault fault, const Scene& scene, const RenderOptions& options) {
+  return render(PreparedAccess::prepare(scene, options, fault), options);
 }
 
-RenderOptions with(RenderOptions options, Fault fault) {
-  options.fault = fault;
-  return options;
+Image image_of(const Scene& scene, const RenderOptions& options, Fault fault = Fault::none) {
+  return render_with(fault, scene, options).film.image();
 }
 
 /// The Cornell box as a file with coordinates scaled and moved would have it.
@@ -62,8 +62,7 @@ Vec3d lamps_seen(Fault fault) {
   const Scene scene = two_lamps();
   RenderOptions options = reference_options(1, 1, 40000);
   options.max_depth = 2;
-  const Vec3f right = image_of(scene, options).pixels[0],
-              wrong = image_of(scene, with(options, fault)).pixels[0];
+  const Vec3f right = image_of(scene, options).pixels[0], wrong = image_of(scene, options, fault).pixels[0];
   return {double(wrong.x / right.x), double(wrong.y / right.y), 0};
 }
 
@@ -79,7 +78,7 @@ TEST_CASE("fault 2: the light is black where the camera sees it", "[faults]") {
   RenderOptions options = reference_options(64, 64, 4);
   options.crop = Window{0, 0, 31, 9, 33, 10};  // inside the light
   CHECK(brightness(image_of(scene, options)) > 30);
-  CHECK(brightness(image_of(scene, with(options, Fault::black_light))) < 5);
+  CHECK(brightness(image_of(scene, options, Fault::black_light)) < 5);
 }
 
 TEST_CASE("fault 3: flat boxes vanish under t_min < t_max", "[faults]") {
@@ -87,7 +86,7 @@ TEST_CASE("fault 3: flat boxes vanish under t_min < t_max", "[faults]") {
   RenderOptions options = reference_options(64, 64, 4);
   options.crop = Window{0, 0, 28, 20, 36, 24};  // the back wall
   CHECK(brightness(image_of(scene, options)) > 0.05);
-  CHECK(brightness(image_of(scene, with(options, Fault::vanishing_boxes))) == 0);
+  CHECK(brightness(image_of(scene, options, Fault::vanishing_boxes)) == 0);
 }
 
 TEST_CASE("fault 4: uniform hemisphere sampling meets 0/0, which is shown white", "[faults]") {
@@ -98,8 +97,7 @@ TEST_CASE("fault 4: uniform hemisphere sampling meets 0/0, which is shown white"
   std::uint64_t sample = 0;  // the first one whose bounce has u = 1/2: one in 2^24
   while (sample_block(options.sampler, key, sample, PathBlocks::direction(0))[0] != 0.5f) ++sample;
   options.samples = SampleRange{sample, 1};
-  const RenderResult right = render(scene, options),
-                     wrong = render(scene, with(options, Fault::white_specks));
+  const RenderResult right = render(scene, options), wrong = render_with(Fault::white_specks, scene, options);
   CHECK(right.film.nonfinite_samples == 0);
   CHECK(brightness(right.film.image()) < 1);
   CHECK(wrong.film.image().pixels[0] == Vec3f(1, 1, 1));
@@ -108,9 +106,9 @@ TEST_CASE("fault 4: uniform hemisphere sampling meets 0/0, which is shown white"
 TEST_CASE("fault 5: an engine built for every number cannot be repeated", "[faults]") {
   const Scene scene = standard_scene("cornell_box");
   const RenderOptions options = reference_options(8, 8, 1);
-  const RenderOptions slow = with(options, Fault::slow_random);
   CHECK(image_of(scene, options).pixels == image_of(scene, options).pixels);
-  CHECK(image_of(scene, slow).pixels != image_of(scene, slow).pixels);
+  CHECK(image_of(scene, options, Fault::slow_random).pixels !=
+        image_of(scene, options, Fault::slow_random).pixels);
 }
 
 TEST_CASE("fault 6: sqrt(u) gives the first of two equal lights a quarter of the samples", "[faults]") {
@@ -130,14 +128,14 @@ TEST_CASE("fault 8: a pixel counter shared by threads scrambles the rows", "[fau
   const Scene scene = standard_scene("cornell_box");
   RenderOptions options = reference_options(64, 64, 4);
   const Image right = image_of(scene, options);
-  options.fault = Fault::shared_counter;
+  const Fault fault = Fault::shared_counter;
   options.threads = 1;
-  CHECK(image_of(scene, options).pixels == right.pixels);
+  CHECK(image_of(scene, options, fault).pixels == right.pixels);
   options.threads = 4;
   bool scrambled = false;  // threads may happen to take turns
-  for (int i = 0; i < 50 && !scrambled; ++i) scrambled = image_of(scene, options).pixels != right.pixels;
+  for (int i = 0; i < 50 && !scrambled; ++i)
+    scrambled = image_of(scene, options, fault).pixels != right.pixels;
   CHECK(scrambled);
-  options.fault = Fault::none;
   CHECK(image_of(scene, options).pixels == right.pixels);
 }
 

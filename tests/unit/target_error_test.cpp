@@ -160,7 +160,10 @@ TEST_CASE("what a target error contradicts is refused") {
   };
   refused([](RenderOptions& o) { o.target_error = 0; }, "above 0");
   refused([](RenderOptions& o) { o.samples = SampleRange{0, 4}; }, "--samples");
-  refused([](RenderOptions& o) { o.fault = Fault::black_light; }, "--fault");
+  RenderOptions faulty = to_target(1e-2);
+  faulty.integrator = Integrator::reference;
+  CHECK_THROWS_WITH(PreparedAccess::prepare(scene, faulty, Fault::black_light),
+                    Contains("--target-error") && Contains("--fault"));
   const Film film;
   refused([](RenderOptions&) {}, "earlier film", &film);
 }

@@ -1,13 +1,11 @@
-#include "render/plan.h"
+#include "plan/plan.h"
 
 #include <set>
 
+#include "core/contract.h"
 #include "geometry/build_quality.h"
 #include "materials/descriptor.h"
-#include "reference/estimator.h"
-#include "render/row_loop.h"
 #include "scene/needs.h"
-#include "wavefront/kernel_api.h"
 
 namespace castray {
 
@@ -22,12 +20,10 @@ bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
 }
 
-/// The samples per pixel asked for do not count: with shared paths the last digits tell trees apart, and a
-/// film continued or merged is to be made with one tree.
-BuildQuality build_quality(const Scene& scene, const RenderOptions& options) {
+/// spp is ignored: the tree changes low-order bits, and films that are merged or resumed must share one tree.
+BuildQuality build_quality(const Scene& scene, const RenderOptions& options, const Window& window) {
   constexpr double usual_rays_of_a_pixel = 16 * 4;
   if (options.build == BuildQuality::fast) return BuildQuality::fast;
-  const Window window = window_of(scene, options);
   const double pixels = static_cast<double>(window.full_width) * window.full_height;
   const MeshView mesh = mesh_of(scene);
   return choose_build(options.build, wasted_boxes(mesh), mesh.count, usual_rays_of_a_pixel * pixels);
@@ -45,7 +41,11 @@ std::string kernel_name(const Plan& plan) {
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, const RenderOptions& options) {
+bool uses_mis(Switch mis, double emitting_share_of_surface) {
+  return mis == Switch::automatic ? emitting_share_of_surface > emitting_share_for_mis : mis == Switch::on;
+}
+
+Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window) {
   const SceneNeeds needs = needs_of(scene);
   Plan plan;
   plan.list = use_list(needs, options);
@@ -58,7 +58,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
-  plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options);
+  plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options, window);
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, std::string_view what) {
     if (!needed) plan.skipped.emplace_back(what);

@@ -1,11 +1,11 @@
-#include "render/film_key.h"
+#include "plan/film_key.h"
 
 #include <fmt/format.h>
 
 #include <cstring>
 
+#include "core/text.h"
 #include "materials/descriptor.h"
-#include "render/row_loop.h"
 
 namespace castray {
 
@@ -57,6 +57,8 @@ void add_map(Hash& hash, const TextureMap& map) {
   hash.add(map.channel);
 }
 
+}  // namespace
+
 std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
   const Camera& camera = scene.camera;
@@ -89,9 +91,8 @@ std::uint64_t scene_hash(const Scene& scene) {
   return hash.value();
 }
 
-}  // namespace
-
-std::string film_key(const Scene& scene, const RenderOptions& o) {
+std::string film_key(const SceneFacts& scene, const Job& job) {
+  const RenderOptions& o = job.options;
   std::string key;
   const auto add = [&key](const char* name, const auto& value) {
     key += fmt::format("{}{}={}", key.empty() ? "" : "; ", name, value);
@@ -99,10 +100,9 @@ std::string film_key(const Scene& scene, const RenderOptions& o) {
   const auto number_or_auto = [](const std::optional<double>& number) {
     return number ? fmt::format("{}", *number) : std::string("auto");
   };
-  const Window w = window_of(scene, o);
-  add("scene", scene.name);
-  add("hash", fmt::format("{:016x}", scene_hash(scene)));
-  add("size", fmt::format("{}x{}", w.full_width, w.full_height));
+  add("scene", escape_item(scene.name));
+  add("hash", fmt::format("{:016x}", scene.hash));
+  add("size", fmt::format("{}x{}", job.window.full_width, job.window.full_height));
   add("seed", o.seed);
   add("integrator", o.integrator == Integrator::reference ? "reference" : "wavefront");
   add("precision", o.precision == Precision::float64 ? "double" : "float");
@@ -117,7 +117,7 @@ std::string film_key(const Scene& scene, const RenderOptions& o) {
       o.reuse.automatic ? "auto" : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
   if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
   if (o.target_error) add("target-error", *o.target_error);
-  if (o.fault != Fault::none) add("fault", static_cast<int>(o.fault));
+  if (job.fault != Fault::none) add("fault", static_cast<int>(job.fault));
   return key;
 }
 

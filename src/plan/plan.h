@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "castray/render.h"
+#include "castray/render_options.h"
 #include "castray/scene.h"
 
 namespace castray {
@@ -23,6 +23,11 @@ struct Plan {
   std::vector<std::string> skipped;          ///< what the scene does not need
 };
 
-Plan make_plan(const Scene& scene, const RenderOptions& options);
+/// For an image of the window's full size.
+Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
+
+/// Whether light and BSDF sampling are combined: as asked, or automatically where emitters cover so much of
+/// the scene (emitting_share_for_mis) that light points next to the shaded point would dominate the variance.
+bool uses_mis(Switch mis, double emitting_share_of_surface);
 
 }  // namespace castray

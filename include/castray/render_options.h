@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "castray/film.h"
+
+namespace castray {
+
+/// `automatic`: the wavefront, except with an absolute epsilon, which only the reference has.
+enum class Integrator : std::uint8_t { automatic, wavefront, reference };
+enum class Precision : std::uint8_t { float32, float64 };
+enum class SamplerKind : std::uint8_t { sobol, independent };
+enum class LightSampling : std::uint8_t { automatic, area, solid_angle, tree };
+enum class Switch : std::uint8_t { automatic, on, off };
+enum class AccelKind : std::uint8_t { automatic, list, bvh };
+enum class BuildQuality : std::uint8_t { automatic, fast, best };
+
+/// How paths of one tile share suffixes: a tile of width x height pixels, `suffixes` of them traced further.
+struct Reuse {
+  bool automatic = true;
+  int width = 0, height = 0, suffixes = 0;  ///< width 0: off
+  friend bool operator==(const Reuse&, const Reuse&) = default;
+};
+
+/// All that a render depends on besides the scene. Defaults are those of the command line.
+struct RenderOptions {
+  int width = 0, height = 0;           ///< full image; 0: the scene's
+  std::optional<Window> crop;          ///< only x0..y1 are read
+  std::uint64_t spp = 64;              ///< samples per pixel; with a target error, the most
+  std::optional<SampleRange> samples;  ///< only these sample indices; else 0 .. spp-1
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0: all that this process may use
+  Integrator integrator = Integrator::automatic;
+  Precision precision = Precision::float32;  ///< of the reference
+  std::optional<double> rr;                  ///< fixed survival probability in (0,1]; else by throughput
+  int max_depth = 0;                         ///< path edges; 0: no limit
+  /// The classic absolute ray-origin offset, in the scene file's units, of the reference; else offsets come
+  /// from error bounds.
+  std::optional<double> epsilon;
+  SamplerKind sampler = SamplerKind::sobol;
+  LightSampling lights = LightSampling::automatic;
+  Switch mis = Switch::automatic;
+  bool jitter = true;
+  /// Biased, off by default: the part of each sample that its first bounce brings, light points at the
+  /// camera's hit excepted, is scaled down to have no component above this radiance. Hides rare bright
+  /// samples, and loses light.
+  std::optional<double> clamp_indirect;
+  std::string isa = "auto";
+  AccelKind accel = AccelKind::automatic;
+  BuildQuality build = BuildQuality::automatic;
+  bool generic = false;
+  Reuse reuse;
+  std::optional<double> time_limit;  ///< seconds
+  /// relMSE, mean over pixels and channels of (x-r)^2 / (r^2 + 0.01), that the image shall have. A pilot,
+  /// whose samples are not in the image, measures the noise of each part of it and so how many samples it
+  /// gets.
+  std::optional<double> target_error;
+};
+
+/// A limit of `spp` for renders to a target error that is no limit in practice.
+inline constexpr std::uint64_t most_samples_to_target = std::uint64_t{1} << 16;
+
+}  // namespace castray

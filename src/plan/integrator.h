@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "castray/render.h"
+#include "plan/job.h"
+#include "plan/sample_map.h"
+
+namespace castray {
+
+/// What rendering some rows hands back besides the film's sums.
+struct RowStats {
+  std::uint64_t rays = 0;
+  std::vector<NonfiniteSample> nonfinite;  ///< samples dropped
+};
+
+/// What an integrator does with a band of rows.
+struct BandWork {
+  int height = 1;  ///< of a band
+  /// Bands may add to rows of their neighbours: they see to it that no two threads add to one pixel at a
+  /// time, there is one band more than fit the window, and a stop waits for the end of the pass.
+  bool overlap = false;
+  /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
+  /// image. Called by several threads at a time, for different bands.
+  std::function<void(int y0, int y1, const SampleRange& samples, const SampleMap& map, Film& film,
+                     RowStats& stats)>
+      render;
+};
+
+/// A scene made ready for one integrator. Const, and used by several renders at a time.
+class PreparedIntegrator {
+ public:
+  virtual ~PreparedIntegrator() = default;
+  /// The work of one render. `job`, whose shaping options are those of the preparation, and this object must
+  /// outlive it.
+  virtual BandWork work(const Job& job) const = 0;
+  /// Fills in instruction set, kernel, what is not needed, and the tree.
+  virtual void describe(RenderStats& stats) const = 0;
+};
+
+}  // namespace castray
