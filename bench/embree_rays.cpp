@@ -7,7 +7,7 @@
 #include <memory>
 #include <type_traits>
 
-#include "core/tool_main.h"
+#include "cli/tool_main.h"
 #include "ray_bench.h"
 
 namespace castray {

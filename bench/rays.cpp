@@ -5,7 +5,7 @@
 
 #include <ostream>
 
-#include "core/tool_main.h"
+#include "cli/tool_main.h"
 #include "geometry/wide_bvh.h"
 #include "ray_bench.h"
 #include "ray_sets.h"

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "core/tool_main.h"
+#include "cli/tool_main.h"
 #include "stress_checks.h"
 #include "wavefront/choose_kernel.h"
 

@@ -31,17 +31,16 @@ struct SampleRange {
 /// noise, which the spread of samples of one scramble does not.
 inline constexpr std::uint64_t replicate_length = std::uint64_t{1} << 20;
 
-/// Pixels (x,y) of the full image with x / noise_block and y / noise_block equal form a block, the least unit
-/// whose noise is told. Neighbouring pixels may share paths, so that their errors cannot be taken for
-/// independent.
+/// Side in pixels of the blocks of the full image's grid, the smallest areas with a noise estimate: errors of
+/// neighbouring pixels, which may share paths, are not independent.
 inline constexpr int noise_block = 8;
 
-/// What a render adds up: per pixel the sum of its samples' radiance and their number.
+/// The sum of the samples' radiance, and their number, of each pixel.
 ///
 /// Sums do not depend on the order of `add` and `merge`. A sample is a float; below 2^-36 of `scale` it is
-/// rounded to a multiple of 2^-60 scale. The sum is a pair of doubles, high + low, where low gathers the
-/// exact error of each addition to high (Knuth's two-sum). Both stay exact while count * sum < 2^46 scale, so
-/// the pair, renormalised, is the correctly rounded exact sum: the same bytes for every order.
+/// rounded to a multiple of 2^-60 scale. The sum is a pair of doubles, high + low, where low collects the
+/// exact error of each addition to high (Knuth's two-sum). Both are exact while count * sum < 2^46 scale, so
+/// that the pair, renormalised, is the correctly rounded exact sum: the same bytes for every order.
 class Film {
  public:
   Film() = default;
@@ -64,8 +63,7 @@ class Film {
   /// The means, as an image of the window's size.
   Image image() const;
 
-  /// From now on the film keeps the sums of its replicates apart, per block. All samples so far must be of
-  /// one replicate.
+  /// Starts to keep the sums of each replicate apart, per block. All samples so far must be of one replicate.
   void keep_replicates();
   bool keeps_replicates() const { return !replicates_.empty(); }
 

@@ -6,11 +6,11 @@
 
 namespace castray {
 
-/// Whether two films or images that tell their noise differ by more than it explains.
+/// Whether two films or images with known noise differ by more than the noise explains.
 struct NoiseTest {
   double alpha = 0;       ///< family-wise false-alarm rate: two renders of one scene fail at most this often
   std::size_t tests = 0;  ///< blocks of all sizes times channels
-  bool paired = false;    ///< replicates of one seed were held against each other, one by one
+  bool paired = false;    ///< replicates of one seed were compared pairwise
   double p = 1;           ///< smallest p-value, corrected for the number of tests (Bonferroni), at most 1
   bool differs() const { return p < alpha; }
 
@@ -31,7 +31,7 @@ NoiseTest test_noise(const Film& film, const Film& reference, double alpha);
 
 /// The same of two images with `noise`, taken for independent, whose errors add up over a block as those of
 /// uncorrelated pixels. The degrees of freedom of a block's variance are those of Satterthwaite (1946); where
-/// they are infinite, t is normal. Throws InputError where an image does not tell its noise, a variance is
+/// they are infinite, t is normal. Throws InputError where an image has no noise estimate, a variance is
 /// negative or not finite, or sizes differ.
 NoiseTest test_noise(const ImageFile& image, const ImageFile& reference, double alpha);
 

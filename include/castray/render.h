@@ -13,12 +13,12 @@
 
 namespace castray {
 
-/// Told to the caller while a render runs, at most some times a second, from one thread at a time.
+/// Reported while a render runs, some times a second, from one thread at a time.
 struct Progress {
   double fraction = 0;      ///< of the work, in [0,1]
   std::uint64_t paths = 0;  ///< finished camera samples
-  /// The sums so far, each row at the end of a pass, or null while rows are in work. Saved as a .film it can
-  /// be resumed; the result is that of an uninterrupted render, byte for byte.
+  /// The sums so far, each row at the end of a pass, or null while rows are in work. Saved as a .film they
+  /// can be resumed; the result equals that of an uninterrupted render, byte for byte.
   const Film* film = nullptr;
 };
 /// Returns false to stop the render as soon as the rows in work are done. What it throws ends the render and
@@ -44,7 +44,7 @@ struct RenderStats {
   std::uint64_t paths = 0;                 ///< camera samples
   std::uint64_t rays = 0;                  ///< closest-hit and shadow rays traced
   std::vector<NonfiniteSample> nonfinite;  ///< the first few
-  std::uint64_t pilot_paths = 0;           ///< of `paths`, those that only told the noise
+  std::uint64_t pilot_paths = 0;           ///< of `paths`, those of the pilot
   std::optional<double> expected_error;    ///< relMSE of the film, with a target error
   Stopped stopped = Stopped::done;
 };
@@ -87,9 +87,9 @@ RenderResult render(const Scene& scene, const RenderOptions& options, const Prog
                     const Film* start = nullptr);
 
 /// Renders `replicates` independent replicates (see `replicate_length`) of spp / replicates samples each, or
-/// of `options.samples` within each replicate, into a film that keeps them apart and so tells its own noise.
-/// If it is stopped early, only whole replicates are kept. Throws InputError also where the samples cannot be
-/// divided.
+/// of `options.samples` within each replicate, into a film that keeps them apart, so that `noise_of` can
+/// estimate its noise. If it is stopped early, only whole replicates are kept. Throws InputError also where
+/// the samples cannot be divided.
 RenderResult render_replicates(const PreparedScene& scene, const RenderOptions& options,
                                std::uint64_t replicates, const ProgressCallback& progress = {});
 RenderResult render_replicates(const Scene& scene, const RenderOptions& options, std::uint64_t replicates,

@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "core/files.h"
-#include "core/tool_main.h"
+#include "cli/tool_main.h"
 #include "generate/shapes.h"
 
 namespace castray {

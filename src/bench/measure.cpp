@@ -14,7 +14,7 @@ namespace castray {
 
 namespace {
 
-/// What a first render tells of a contender's cost.
+/// A contender's cost, estimated by a first render.
 struct Cost {
   double seconds_per_spp = 0;  ///< of the render alone
   double overhead = 0;         ///< per render: start, load, build, write, evaluation of the image

@@ -29,12 +29,12 @@ void replace_file(const fs::path& image, const fs::path& reference) {
 
 /// Replaces an image, with the variances beside it, once it is known to be one that can be read.
 void accept_file(const fs::path& image, const fs::path& reference) {
-  if (image.extension() != reference.extension())
+  if (suffix_of(image) != suffix_of(reference))
     throw InputError({reference.string()},
                      "has another suffix than " + image.string() + "; convert the image first");
   read_image(image);
   replace_file(image, reference);
-  if (image.extension() == ".pfm" && fs::exists(variance_file(image)))
+  if (suffix_of(image) == ".pfm" && fs::exists(variance_file(image)))
     replace_file(variance_file(image), variance_file(reference));
 }
 

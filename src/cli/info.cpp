@@ -96,7 +96,7 @@ void print_plan(const Scene& scene) {
   const Plan plan = make_plan(scene, {}, window_of(scene.width, scene.height, {}));
   fmt::print("kernel     {}\n", plan.kernel);
   if (!plan.list) fmt::print("tree       build {}\n", name_of(plan.build));
-  fmt::print("skipped    {}\n", fmt::join(plan.skipped, ", "));
+  fmt::print("not needed {}\n", fmt::join(plan.skipped, ", "));
 }
 
 int print_info(const std::string& file) {

@@ -7,6 +7,7 @@
 #include "castray/error.h"
 #include "cli/display_flags.h"
 #include "cli/values.h"
+#include "core/files.h"
 #include "core/nearest.h"
 #include "core/text.h"
 #include "render/prepared_scene.h"
@@ -249,7 +250,7 @@ PreparedScene prepare(const Scene& scene, const RenderRequest& request) {
 
 Camera camera_of(const CameraFlags& given, Scene& scene) {
   if (!given.position && !given.look_at && !given.up && !given.fov)
-    return scene.file.extension() == ".obj" ? automatic_camera(scene) : scene.camera;
+    return suffix_of(scene.file) == ".obj" ? automatic_camera(scene) : scene.camera;
   const Camera& own = scene.camera;
   const Vec3d position = given.position ? scene.to_scene(*given.position) : own.position;
   const Vec3d look_at = given.look_at    ? scene.to_scene(*given.look_at)

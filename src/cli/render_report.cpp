@@ -73,7 +73,11 @@ void RenderReport::print_summary(const std::vector<std::filesystem::path>& outpu
   fmt::print(stderr, "{}: {} triangles, {} x {} pixels, {} spp; {}{}; {} threads\n", scene.name,
              scene.triangles.size(), film.width(), film.height(), spp(), s.kernel,
              s.isa == "none" ? "" : " (" + s.isa + ")", s.threads);
-  if (!s.skipped.empty()) fmt::print(stderr, "skipped: {}\n", joined(s.skipped));
+  if (options.epsilon && options.integrator == Integrator::automatic)
+    fmt::print(stderr,
+               "rendered by the reference integrator: only it has an absolute epsilon (--epsilon {:g})\n",
+               *options.epsilon);
+  if (!s.skipped.empty()) fmt::print(stderr, "not needed: {}\n", joined(s.skipped));
   if (options.clamp_indirect)
     fmt::print(stderr, "biased: --clamp-indirect {:g} loses indirect light\n", *options.clamp_indirect);
   fmt::print(

@@ -23,6 +23,8 @@ inline constexpr int index_bits = 20;
 struct PathBlocks {
   /// Position in the pixel (2), light point of the first vertex (2).
   static constexpr uint32_t camera = 0;
+  /// Point on the lens (2), for a camera that has one.
+  static constexpr uint32_t lens = 0xffffffffu;
   /// At vertex k >= 0 (0 is the camera's hit): direction (2), light point of vertex k + 1 (2).
   CASTRAY_CONTRACT static uint32_t direction(uint32_t vertex) { return 1 + 2 * vertex; }
   /// At vertex k: roulette, lobe, light, spare.

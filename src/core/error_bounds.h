@@ -23,16 +23,16 @@ Vec3<T> magnitude(const Vec3<T>& v) {
   return {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
 }
 
-/// Error, per coordinate, that a ray/triangle test adds where the triangle reaches `distance` from the ray's
-/// origin: moving a vertex there and shearing it (TriangleTest) makes up to 4 roundings of terms no larger
-/// than twice that distance, in two axes, and interpolating the depth some more.
+/// Bound, per coordinate, of the error that a ray/triangle test adds for a triangle up to `distance` from the
+/// ray's origin: translating and shearing a vertex (TriangleTest) rounds up to 4 times, in two axes, terms of
+/// at most twice that distance; interpolating the depth adds some more.
 template <class T>
 Vec3<T> error_of_test(T distance) {
   return Vec3<T>(distance * gamma_bound<T>(24));
 }
 
-/// A point on a triangle from which a ray starts or at which it ends. `error`, per coordinate, bounds how far
-/// rounding may put the point from the plane in which a ray/triangle test finds the triangle.
+/// A point on a triangle where a ray starts or ends. `error` bounds, per coordinate, the point's distance by
+/// rounding from the plane in which a ray/triangle test finds the triangle.
 template <class T>
 struct TrianglePoint {
   Vec3<T> p, error;
@@ -61,7 +61,7 @@ T neighbour(T x, bool above) {
 
 /// The origin of a ray that leaves a surface on the side of `direction`: `p` pushed along the unit normal by
 /// the projection of its error bound, each coordinate rounded one step outward. Never on the other side of
-/// the surface, and no further from it than rounding demands (Pharr et al., Physically Based Rendering,
+/// the surface, and no further away than rounding requires (Pharr et al., Physically Based Rendering,
 /// "Robust spawned ray origins").
 template <class T>
 Vec3<T> offset_origin(const Vec3<T>& p, const Vec3<T>& error, const Vec3<T>& normal,

@@ -1,9 +1,13 @@
 #include "core/files.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
+#include <ext/stdio_filebuf.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -52,36 +56,53 @@ bool is_special(const fs::path& file) {
   return fs::exists(status) && !fs::is_regular_file(status);
 }
 
-/// A new, empty file in `folder` that is removed again unless it is renamed.
+/// Writes to `out`, which goes to `file`. Throws InputError unless all of it arrives.
+void write_stream(const fs::path& file, std::ostream& out, const std::function<void(std::ostream&)>& write) {
+  errno = 0;
+  write(out);
+  out.flush();
+  if (!out) fail(file, "cannot be written: " + reason(errno) + "; free some space or write elsewhere");
+}
+
+/// A new, empty file in `folder` that is removed again unless it takes the target's place.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& folder) {
     static std::atomic<unsigned> number{0};
-    int descriptor = -1;
-    for (int tries = 0; tries < 1000 && descriptor < 0; ++tries) {
+    for (int tries = 0; tries < 1000 && descriptor_ < 0; ++tries) {
       path_ = folder / (".castray-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp");
-      descriptor = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor < 0 && errno != EEXIST) break;
+      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && errno != EEXIST) break;
     }
-    if (descriptor < 0)
+    if (descriptor_ < 0) {
       error_ = errno;
-    else
-      ::close(descriptor);
+      path_.clear();
+    }
   }
   ~TemporaryFile() {
     std::error_code ignored;
-    if (!path_.empty() && !error_) fs::remove(path_, ignored);
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!path_.empty()) fs::remove(path_, ignored);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  const fs::path& path() const { return path_; }
   int error() const { return error_; }
 
-  void rename_to(const fs::path& target) {
+  /// Returns when the bytes are on the disk. `file` is for messages.
+  void write(const fs::path& file, const std::function<void(std::ostream&)>& write) {
+    __gnu_cxx::stdio_filebuf<char> buffer(::dup(descriptor_), std::ios::out | std::ios::binary);
+    std::ostream out(&buffer);
+    if (!buffer.is_open()) fail(file, "cannot be opened for writing: " + reason(errno));
+    write_stream(file, out, write);
+    if (::fsync(descriptor_) != 0) fail(file, "cannot be written: " + reason(errno) + "; write elsewhere");
+  }
+
+  void take_place_of(const fs::path& target) {
+    struct stat old;
     std::error_code error;
-    const fs::file_status old = fs::status(target, error);
-    if (fs::exists(old)) fs::permissions(path_, old.permissions(), error);
+    if (::stat(target.c_str(), &old) == 0 && ::fchmod(descriptor_, old.st_mode & 07777) != 0)
+      fail(target, "cannot be replaced: " + reason(errno));
     fs::rename(path_, target, error);
     if (error) fail(target, "cannot be replaced: " + error.message());
     path_.clear();
@@ -89,19 +110,26 @@ class TemporaryFile {
 
  private:
   fs::path path_;
+  int descriptor_ = -1;
   int error_ = 0;
 };
 
-void write_stream(const fs::path& file, const fs::path& to, const std::function<void(std::ostream&)>& write) {
+void write_special(const fs::path& file, const fs::path& target,
+                   const std::function<void(std::ostream&)>& write) {
   errno = 0;
-  std::ofstream out(to, std::ios::binary);
+  std::ofstream out(target, std::ios::binary);
   if (!out) fail(file, "cannot be opened for writing: " + reason(errno));
-  write(out);
-  out.close();
-  if (!out) fail(file, "cannot be written: " + reason(errno) + "; free some space or write elsewhere");
+  write_stream(file, out, write);
 }
 
 }  // namespace
+
+std::string suffix_of(const fs::path& file) {
+  std::string suffix = file.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return suffix;
+}
 
 std::string read_file(const fs::path& file) {
   std::error_code ignored;
@@ -143,11 +171,11 @@ void check_writable(const fs::path& file) {
 void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
   check_writable(file);
   const fs::path target = link_target(file);
-  if (is_special(target)) return write_stream(file, target, write);
+  if (is_special(target)) return write_special(file, target, write);
   TemporaryFile temporary(folder_of(target));
   if (temporary.error()) fail(file, "cannot be written: " + reason(temporary.error()));
-  write_stream(file, temporary.path(), write);
-  temporary.rename_to(target);
+  temporary.write(file, write);
+  temporary.take_place_of(target);
 }
 
 void write_file(const fs::path& file, std::string_view bytes) {

@@ -87,9 +87,7 @@ bool is_written(const Format& format) { return format.write || is_film(format); 
 
 /// Null where the suffix is unknown.
 const Format* find_format(const std::filesystem::path& file) {
-  std::string suffix = file.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string suffix = suffix_of(file);
   const auto* found = std::find_if(std::begin(formats), std::end(formats),
                                    [&](const Format& f) { return suffix == f.suffix; });
   return found == std::end(formats) ? nullptr : found;

@@ -19,8 +19,8 @@ struct RowStats {
 /// What an integrator does with a band of rows.
 struct BandWork {
   int height = 1;  ///< of a band
-  /// Bands may add to rows of their neighbours: they see to it that no two threads add to one pixel at a
-  /// time, there is one band more than fit the window, and a stop waits for the end of the pass.
+  /// Bands may add to rows of their neighbours. Then `render` locks the rows, there is one band more than
+  /// fits the window, and a stop waits for the end of the pass.
   bool overlap = false;
   /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
   /// image. Called by several threads at a time, for different bands.

@@ -62,14 +62,18 @@ void check_target(const RenderOptions& o, Fault fault) {
 }
 
 /// What castRay does not have is refused, never ignored.
-void check_reference(const RenderOptions& o, const std::string& chosen_by) {
-  const std::string leave = o.epsilon && chosen_by != "" ? "leave one out" : "leave it at auto";
+void check_reference(const RenderOptions& o) {
+  const bool by_epsilon = o.integrator == Integrator::automatic;
+  const std::string reference =
+      "the reference integrator" +
+      (by_epsilon ? fmt::format(", which --epsilon {} asks for,", o.epsilon.value_or(0)) : std::string());
+  const std::string leave = by_epsilon ? "; leave one out" : "; leave it at auto";
   require(o.lights == LightSampling::automatic || o.lights == LightSampling::area,
-          "--lights: the reference integrator" + chosen_by + " samples lights by area only; " + leave);
+          "--lights: " + reference + " samples lights by area only" + leave);
   require(o.reuse.automatic || o.reuse.width == 0,
-          "--reuse: the reference integrator" + chosen_by + " shares no paths; " + leave);
+          "--reuse: " + reference + " shares no paths" + leave + (by_epsilon ? "" : " or off"));
   require(o.isa == "auto" || o.isa == "scalar",
-          "--isa " + o.isa + ": the reference integrator" + chosen_by + " has no vector kernels; " + leave);
+          "--isa " + o.isa + ": " + reference + " has no vector kernels" + leave);
 }
 
 void check_wavefront(const RenderOptions& o, Fault fault) {
@@ -90,13 +94,12 @@ void check_wavefront(const RenderOptions& o, Fault fault) {
 
 /// Decides what `automatic` leaves open.
 Integrator choose_integrator(const RenderOptions& o, Fault fault) {
-  const bool by_epsilon = o.integrator == Integrator::automatic && o.epsilon;
-  if (o.integrator != Integrator::reference && !by_epsilon) {
-    check_wavefront(o, fault);
-    return Integrator::wavefront;
+  if (o.integrator == Integrator::reference || (o.integrator == Integrator::automatic && o.epsilon)) {
+    check_reference(o);
+    return Integrator::reference;
   }
-  check_reference(o, by_epsilon ? fmt::format(", which --epsilon {} asks for,", *o.epsilon) : "");
-  return Integrator::reference;
+  check_wavefront(o, fault);
+  return Integrator::wavefront;
 }
 
 double brightest_emission(const Scene& scene) {

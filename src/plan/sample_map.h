@@ -12,7 +12,7 @@ namespace castray {
 /// Blocks are squares of the full image's grid, cut at the window.
 class SampleMap {
  public:
-  /// Pixels of a block's side: several tiles of shared paths, so that a block's noise can be told.
+  /// Side of a block in pixels: several tiles of shared paths, so that a block's noise can be estimated.
   static constexpr int block_side = 32;
 
   /// The same samples everywhere.

@@ -23,7 +23,7 @@ struct SceneParts {
   Vec3<T> environment;
 };
 
-/// The recursive path tracer, to be held against the rendering equation (Kajiya 1986)
+/// The recursive path tracer, line by line the rendering equation (Kajiya 1986)
 ///
 ///     L(x, wo) = Le(x, wo) + integral f(x, wo, wi) L(x', -wi) |cos wi| d wi
 ///
@@ -70,10 +70,10 @@ class CastRay {
     std::uint64_t rays = 0;
   };
 
-  /// How a ray was chosen, which decides what emission it may count.
+  /// How a ray was sampled, which decides how much of the emission that it hits counts.
   struct Arrival {
     bool counts = false, shared = false;
-    T pdf = 0;  ///< where shared: density per steradian of the ray's direction
+    T pdf = 0;  ///< where shared, by MIS weight: of the ray's direction, in solid angle
     static Arrival whole() { return {.counts = true}; }
     static Arrival none() { return {}; }
     static Arrival shared_with_lights(T pdf) { return {.counts = true, .shared = true, .pdf = pdf}; }
@@ -102,7 +102,7 @@ class CastRay {
     return radiance + (clamps ? clamped(indirect, T(*options_.clamp_indirect)) : indirect);
   }
 
-  /// Le, or the part of it that this way of finding it has to count.
+  /// Le, weighted by how the ray was sampled.
   Vec3<T> emission(const Surface<T>& x, T distance, const Arrival& arrival) const {
     const Material& material = scene_.materials[x.material];
     const T cosine = dot(x.normal, x.to_viewer);
@@ -113,7 +113,7 @@ class CastRay {
     return le * balance(arrival.pdf, light_pdf);
   }
 
-  /// Integral over the emitters: f Le cos cos' / |x' - x|^2 V / density, at one point x'.
+  /// Integral over the emitters' areas, estimated at one point x': f Le cos cos' V / (|x' - x|^2 pdf).
   Vec3<T> direct_light(const Surface<T>& x, Path& path, double u_choice) const {
     if (lights_.empty()) return {};
     const LightPoint<T> y = textbook_.sample_light(lights_, u_choice, path.light_u);
@@ -132,7 +132,7 @@ class CastRay {
     return segments_.visible(accel_, x, y) ? radiance : Vec3<T>();
   }
 
-  /// Integral over the hemisphere of what is not direct light: f cos / pdf L, in one direction.
+  /// Integral over all directions of light that is not direct, estimated in one: f |cos| L / pdf.
   Vec3<T> indirect_light(const Surface<T>& x, Path& path, T u_roulette, T u_lobe) const {
     const std::array<float, 4> u = draw(path, PathBlocks::direction(path.vertex));
     const BsdfSample<T> sample = textbook_.sample_bsdf(x.bsdf, x.wo, u_lobe, {T(u[0]), T(u[1])});

@@ -14,13 +14,13 @@ Vec3<T> far_error(const Surface<T>& x, const Vec3<T>& segment) {
   return x.error + error_of_test(max_component(magnitude(segment)));
 }
 
-/// Where rays start and which segments are free: by the hits' own error bounds, or, for comparison, by the
-/// classic absolute epsilon (then the scene is to be in the file's own coordinates).
+/// Ray-origin offsets and visibility: by the hits' error bounds or, for comparison, by the classic absolute
+/// epsilon (then the scene must be in the file's own coordinates).
 template <class T>
 struct Segments {
   std::optional<double> epsilon;
 
-  /// The classic way takes the point from the ray instead of the triangle, and knows no error bound.
+  /// With an absolute epsilon the hit point is taken along the ray, without an error bound.
   void place(Surface<T>& x, const Hit<T>& hit, const Ray<T>& ray) const {
     if (!epsilon) return;
     x.p = ray.origin + ray.direction * hit.t;
@@ -33,10 +33,10 @@ struct Segments {
     return x.p + x.normal * (side * static_cast<T>(*epsilon));
   }
 
-  /// Whether nothing lies between x and y: the segment between both offset points is free, t < 1 on the
-  /// unnormalised vector. It is traced from the light: an origin is known to its own error, a far end to one
-  /// that grows with the distance, and what is so near to x that it might be missed would have kept the path
-  /// from x. Classic: the first thing hit from x towards y is within epsilon of y.
+  /// Whether nothing lies between x and y: no hit with t < 1 on the unnormalised segment between both offset
+  /// points. It is traced from the light, because the error at the far end grows with the distance: an
+  /// occluder so near to x that it is missed there would have stopped the path before x. With an absolute
+  /// epsilon: the first hit from x towards y is within epsilon of y.
   template <class Accel>
   bool visible(const Accel& accel, const Surface<T>& x, const LightPoint<T>& y) const {
     const Vec3<T> towards = y.p - x.p;
@@ -52,8 +52,8 @@ struct Segments {
   }
 };
 
-/// Whether, as far as rounding lets us know, x lies in y's plane or y in x's: then neither lights the other,
-/// and cos cos' / |x' - x|^2 would be the quotient of two rounding errors.
+/// Whether x lies in y's plane or y in x's, within rounding errors: then neither lights the other, and
+/// cos cos' / |x' - x|^2 would be a quotient of rounding errors.
 template <class T>
 bool in_one_plane(const Surface<T>& x, const LightPoint<T>& y, const Vec3<T>& segment) {
   const Vec3<T> error = far_error(x, segment) + y.error;

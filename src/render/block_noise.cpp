@@ -7,8 +7,8 @@ namespace castray {
 
 namespace {
 
-/// Noise is taken to be at least this part of the image's: a short pilot may have missed what is rare. No
-/// block gets less than an eighth of the samples that the image's noise would call for.
+/// A block's noise is taken to be at least this part of the image's: a short pilot may have missed rare
+/// paths. So each block gets at least an eighth of the samples that the image's mean noise asks for.
 constexpr double least_noise = 1.0 / 64;
 
 /// relMSE of one sample of a pixel, from means `a` of n and `b` of m samples.

@@ -23,8 +23,8 @@ constexpr std::uint64_t longest_pass = 64;             ///< samples per pixel
 constexpr std::size_t reported_nonfinite = 8;
 constexpr double seconds_between_reports = 0.1;
 
-/// Passes end, counted from the first sample, at 1, 2, 4, ..., from the longest pass on at its multiples, and
-/// at the last sample.
+/// The sample counts at which passes end: 1, 2, 4, ... up to the longest pass, then its multiples, and the
+/// last sample.
 class Passes {
  public:
   Passes(std::uint64_t samples, std::uint64_t pixels) : samples_(samples) {
@@ -40,8 +40,8 @@ class Passes {
   std::uint64_t samples_, longest_ = longest_pass;
 };
 
-/// How many samples each row of an earlier run has. Its rows were left at the end of a pass, or of the whole
-/// run; pixels count less where samples were dropped.
+/// How many samples each row of an earlier run has: each row was left at the end of a pass or of the run.
+/// Some of its pixels may have less, where samples were not finite.
 std::vector<std::uint64_t> finished_samples(const Film& film, const Passes& passes) {
   std::vector<std::uint64_t> finished;
   const Window& w = film.window();
@@ -173,8 +173,8 @@ class RowLoop {
     if (first.size() > reported_nonfinite) first.resize(reported_nonfinite);
   }
 
-  /// Tells the caller, unless that was done just now or is being done by another thread. `film`: where no row
-  /// is in work.
+  /// Reports to the caller, unless that was done just now or another thread is doing it. `film`: null while
+  /// rows are in work.
   void report(const Film* film) {
     const std::unique_lock lock(reporting_, std::try_to_lock);
     if (!lock) return;

@@ -4,14 +4,14 @@
 
 namespace castray {
 
-/// The loop around every integrator, which renders the samples that `map` wants: passes over the image, each
-/// for some of the samples; in a pass OpenMP hands out bands of rows dynamically, and nothing is shared but
-/// the band counter. Tells `progress`, stops at its wish or at the time limit, and fills in all of the stats
-/// that it knows. What `work` or `progress` throws is thrown on.
+/// The loop around every integrator: renders the samples of `map` in passes over the image, each for some of
+/// the samples. In a pass OpenMP hands out bands of rows dynamically. Calls `progress`, stops when it returns
+/// false or at the time limit, and fills in the statistics that it knows. Exceptions of `work` and `progress`
+/// are passed on to the caller.
 ///
-/// As film sums are exact, the passes do not show in the result. They make an early stop leave a whole image
-/// and a checkpoint possible: between passes no row is in work. `start`, if not null, is the film of an
-/// earlier run of the same render, whose samples are not rendered again.
+/// Film sums are exact, so that the result does not depend on the passes. Between passes no row is in work:
+/// then an early stop leaves an image without gaps, and a checkpoint can be saved. `start`, if not null, is
+/// the film of an earlier run of the same render, whose samples are not rendered again.
 RenderResult run_rows(const Job& job, const ProgressCallback& progress, const Film* start,
                       const SampleMap& map, const BandWork& work);
 

@@ -10,13 +10,12 @@ namespace {
 
 /// Samples per pixel of the two films of the first pilot.
 constexpr std::uint64_t first_pilot = 2;
-/// A pilot is made of one sample to so many planned ones, and is long enough with one to the second
-/// number.
+/// A pilot aims at one sample for every 8 of the image, and is long enough with one for every 16.
 constexpr std::uint64_t share_aimed_at = 8, share_needed = 16;
-/// A short pilot is not believed so far as to make the next one longer by more than this.
+/// The next pilot has at most this many times the samples of a block: a short pilot's estimate is unreliable.
 constexpr std::uint64_t fastest_growth = 8;
 constexpr std::uint64_t last_round = 15;
-/// Pilots are the last replicates that 32-bit sample indices reach, which no image does.
+/// Pilots use the last replicates of 32-bit sample indices, which no image reaches.
 constexpr std::uint64_t last_replicate = (std::uint64_t{1} << 32) / replicate_length - 1;
 constexpr std::uint64_t most_of_image = (last_replicate - 2 * last_round - 1) * replicate_length;
 
@@ -43,7 +42,7 @@ class TargetRun {
   }
 
  private:
-  /// The samples of one map, within what is left of the time. Its statistics are added up.
+  /// Renders the samples of one map in the time that is left, and adds up the statistics.
   RenderResult render(const SampleMap& map) {
     Job job = job_;
     if (job.options.time_limit) *job.options.time_limit -= stats_.render_seconds;
@@ -84,7 +83,7 @@ class TargetRun {
     return longer;
   }
 
-  /// Of a render stopped too early to have another.
+  /// The image of a render that was stopped before the pilots ended.
   RenderResult pilots_as_image() {
     Film& film = pilots_[0];
     if (!pilots_[1].samples.empty()) film.merge(pilots_[1]);

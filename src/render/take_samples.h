@@ -7,10 +7,10 @@ namespace castray {
 /// Runs the row loop over all the samples that the job asks for: so many of every pixel, or what a target
 /// error takes. Arguments as for `run_rows`; no earlier film goes with a target error.
 ///
-/// Adaptive sampling that looks at the samples it keeps is biased: a pixel that happens to look dark and calm
-/// would be believed too early. Here a pilot decides, two films of other scrambles than the image's, an
-/// eighth of its samples or a little more in all, made in rounds of growing size. Then the image is rendered
-/// as planned, without a further look: each block is what it would be in a plain render of as many samples.
+/// Adaptive sampling that decides by the samples it keeps is biased: a pixel that looks dark and noise-free
+/// by chance is stopped too early. Here a pilot decides: two films with other scrambles than the image's,
+/// made in rounds of growing size, with about an eighth of the image's samples in all. Then the image is
+/// rendered as planned, so that each block equals that of a plain render with as many samples.
 RenderResult take_samples(const Job& job, const ProgressCallback& progress, const Film* start,
                           const BandWork& work);
 

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "plan/integrator.h"
-#include "wavefront/kernel_api.h"
 
 namespace castray {
 

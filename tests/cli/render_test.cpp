@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -280,8 +281,37 @@ TEST_CASE("an .obj is seen by an automatic view or by camera flags") {
   CHECK(read_image(folder / "a.pfm").image.pixels != flags.pixels);
 }
 
+TEST_CASE("a suffix in capitals is the same format: an .OBJ gets the automatic view of an .obj") {
+  const TemporaryFolder folder;
+  write_file(folder / "lamp.mtl", "newmtl lamp\nKd 0 0 0\nKe 1 1 1\n");
+  for (const char* name : {"lamp.obj", "LAMP2.OBJ"}) {
+    write_file(folder / name,
+               "mtllib lamp.mtl\nusemtl lamp\nv -1 -3 0\nv 1 -3 0\nv 1 3 0\nv -1 3 0\nf 1 2 3 4\n");
+    const RunResult result = run_castray(
+        {"render", name, "--size", "48x24", "--spp", "1", "-q", "-o", std::string(name) + ".film"},
+        folder.path());
+    CHECK(result.exit_code == 0);
+  }
+  const Image lower = read_film(folder / "lamp.obj.film").image();
+  CHECK(std::any_of(lower.pixels.begin(), lower.pixels.end(), [](const Vec3f& p) { return p.x == 1; }));
+  CHECK(read_film(folder / "LAMP2.OBJ.film").image().pixels == lower.pixels);
+}
+
+TEST_CASE("an absolute epsilon says that it is the reference which renders") {
+  const TemporaryFolder folder;
+  const auto err = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", cornell, "--size", "8x8", "--spp", "1", "-o", "x.film"});
+    const RunResult result = run_castray(flags, folder.path());
+    CHECK(result.exit_code == 0);
+    return result.err;
+  };
+  CHECK_THAT(err({"--epsilon", "0.01"}), Contains("castRay, float") && Contains("only it has an absolute"));
+  CHECK_THAT(err({"--epsilon", "0.01", "--integrator", "reference"}), !Contains("only it has"));
+  CHECK_THAT(err({}), !Contains("only it has") && !Contains("castRay"));
+}
+
 TEST_CASE("info tells what a render would choose") {
   const TemporaryFolder folder;
   CHECK_THAT(run_castray({"info", cornell}, folder.path()).out,
-             Contains("kernel     list, diffuse") && Contains("skipped    tree"));
+             Contains("kernel     list, diffuse") && Contains("not needed tree"));
 }

@@ -47,6 +47,20 @@ const std::vector<Case> cases = {
     render({"--rr", "x"}, "--rr 'x': must be a number"),
     render({"--epsilon", "-1"}, "--epsilon -1: must be a number above 0"),
     render({"--epsilon", "nan"}, "--epsilon 'nan': must be a number"),
+    render(
+        {"--epsilon", "0.01", "--integrator", "wavefront"},
+        "--epsilon 0.01: only the reference integrator has an absolute epsilon, not --integrator wavefront; "
+        "leave one out"),
+    render(
+        {"--epsilon", "0.01", "--isa", "avx2"},
+        "--isa avx2: the reference integrator, which --epsilon 0.01 asks for, has no vector kernels; leave "
+        "one out"),
+    render({"--epsilon", "0.01", "--lights", "tree"},
+           "--lights: the reference integrator, which --epsilon 0.01 asks for, samples lights by area only; "
+           "leave one out"),
+    render(
+        {"--epsilon", "0.01", "--reuse", "8x8:16"},
+        "--reuse: the reference integrator, which --epsilon 0.01 asks for, shares no paths; leave one out"),
     render({"--clamp-indirect", "0"}, "--clamp-indirect 0: must be a number above 0"),
     render({"--clamp-indirect", "inf"}, "--clamp-indirect 'inf': must be a number"),
     render({"--time-limit", "-1"}, "--time-limit -1: must be a number above 0"),

@@ -14,7 +14,7 @@ namespace {
 ImageFile noisy_image(std::uint32_t seed, float factor = 1) {
   constexpr int summands = 12;  // of a uniform number each, of variance 1/12
   ImageFile file{Image(20, 12), false, {}, Noise{Image(20, 12)}};
-  std::uint32_t state = hash_combine(seed, 77);
+  std::uint32_t state = hash_combine(seed, 77u);
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 20; ++x) {
       const float deviation = 0.01f + 0.002f * static_cast<float>(x);

@@ -1,6 +1,9 @@
 #include "core/files.h"
 
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <fstream>
 #include <ostream>
 
@@ -33,6 +36,43 @@ TEST_CASE("a failed write leaves the old file and no temporary one") {
                   InputError);
   CHECK(read_file(file) == "old");
   CHECK(folder.names() == std::vector<std::string>{"out.txt"});
+}
+
+TEST_CASE("a disk that fills up leaves the old file and no temporary one") {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "out.txt";
+  write_file(file, "old");
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit small{1 << 12, limit.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &small);
+  std::string message;
+  try {
+    write_file(file, std::string(1 << 20, 'x'));
+  } catch (const InputError& error) {
+    message = error.what();
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  CHECK_THAT(message, Catch::Contains("cannot be written: File too large"));
+  CHECK(read_file(file) == "old");
+  CHECK(folder.names() == std::vector<std::string>{"out.txt"});
+}
+
+TEST_CASE("a writer may go back in the file") {
+  const TemporaryFolder folder;
+  write_file(folder / "out", [](std::ostream& out) {
+    out << "size ????" << std::string(1 << 16, '.');
+    out.seekp(5);
+    out << "64";
+  });
+  CHECK(read_file(folder / "out") == "size 64??" + std::string(1 << 16, '.'));
+}
+
+TEST_CASE("the suffix of a name is in lower case") {
+  CHECK(suffix_of("a/BOX.OBJ") == ".obj");
+  CHECK(suffix_of("a.b/box") == "");
 }
 
 TEST_CASE("a symbolic link is followed, a device is written to, a full one is an error") {

@@ -4,6 +4,7 @@
 
 #include "castray/error.h"
 #include "render/block_noise.h"
+#include "render/prepared_scene.h"
 #include "test_scenes.h"
 
 using namespace castray;
