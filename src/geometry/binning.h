@@ -9,22 +9,14 @@ namespace castray {
 
 /// A primitive as a builder sees it: its box, with its number in the fourth lane of `lower`.
 struct PrimRef {
-  __m128 lower, upper;
+  Float4 lower, upper;
 
   PrimRef() = default;
-  PrimRef(const Bounds& box, std::uint32_t id)
-      : lower(_mm_or_ps(_mm_and_ps(box.lower, xyz()),
-                        _mm_castsi128_ps(_mm_setr_epi32(0, 0, 0, static_cast<int>(id))))),
-        upper(_mm_and_ps(box.upper, xyz())) {}
+  PrimRef(const Bounds& box, std::uint32_t id) : lower(box.lower.with_w(id)), upper(box.upper.without_w()) {}
 
-  std::uint32_t id() const {
-    return static_cast<std::uint32_t>(_mm_cvtsi128_si32(_mm_shuffle_epi32(_mm_castps_si128(lower), 0xff)));
-  }
+  std::uint32_t id() const { return lower.w_bits(); }
   /// Twice the box's centre; the fourth lane is 0.
-  __m128 centroid2() const { return _mm_add_ps(_mm_and_ps(lower, xyz()), upper); }
-
- private:
-  static __m128 xyz() { return _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)); }
+  Float4 centroid2() const { return lower.without_w() + upper; }
 };
 
 inline constexpr int max_bins = 32;
@@ -34,34 +26,33 @@ class BinMap {
  public:
   BinMap(const Bounds& centroids2, std::uint32_t count)
       : bins_(std::min(max_bins, 16 + static_cast<int>(count / 4))), origin_(centroids2.lower) {
-    const Vec3f extent = to_vec3(_mm_sub_ps(centroids2.upper, centroids2.lower));
+    const Vec3f extent = to_vec3(centroids2.upper - centroids2.lower);
     const auto scale = [&](float e) {
       const float s = static_cast<float>(bins_) * 0.99999f / e;
       return e > 0 && std::isfinite(s) ? s : 0;
     };
-    scale_ = _mm_setr_ps(scale(extent.x), scale(extent.y), scale(extent.z), 0);
+    scale_ = {scale(extent.x), scale(extent.y), scale(extent.z), 0};
   }
 
   int bins() const { return bins_; }
   /// No axis can be split.
-  bool is_degenerate() const { return (_mm_movemask_ps(_mm_cmpgt_ps(scale_, _mm_setzero_ps())) & 7) == 0; }
+  bool is_degenerate() const { return (scale_.positive_lanes() & 7) == 0; }
 
   /// The bin on each axis. NaN, of overflowing centroids, goes to bin 0.
-  __m128i operator()(const PrimRef& ref) const {
-    const __m128 position = _mm_mul_ps(_mm_sub_ps(ref.centroid2(), origin_), scale_);
-    const __m128 last = _mm_set1_ps(static_cast<float>(bins_ - 1));
-    return _mm_cvttps_epi32(_mm_min_ps(_mm_max_ps(position, _mm_setzero_ps()), last));
+  Int4 operator()(const PrimRef& ref) const {
+    const Float4 position = (ref.centroid2() - origin_) * scale_;
+    return min(max(position, Float4(0.f)), Float4(static_cast<float>(bins_ - 1))).truncated();
   }
 
   int bin_on(int axis, const PrimRef& ref) const {
-    alignas(16) int lanes[4];
-    _mm_store_si128(reinterpret_cast<__m128i*>(lanes), (*this)(ref));
+    alignas(16) std::int32_t lanes[4];
+    (*this)(ref).store(lanes);
     return lanes[axis];
   }
 
  private:
   int bins_;
-  __m128 origin_, scale_;
+  Float4 origin_, scale_;
 };
 
 /// Where to cut: bins below `bin` on `axis` go left. Not valid if nothing is worth a cut.
@@ -80,8 +71,8 @@ class Bins {
 
   void add(const BinMap& map, const PrimRef* begin, const PrimRef* end) {
     for (const PrimRef* p = begin; p != end; ++p) {
-      alignas(16) int bin[4];
-      _mm_store_si128(reinterpret_cast<__m128i*>(bin), map(*p));
+      alignas(16) std::int32_t bin[4];
+      map(*p).store(bin);
       for (int axis = 0; axis < 3; ++axis) {
         box_[bin[axis]][axis].add(p->lower, p->upper);
         ++count_[bin[axis]][axis];

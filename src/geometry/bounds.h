@@ -1,41 +1,40 @@
 #pragma once
 
-#include <emmintrin.h>
-
 #include <cmath>
 #include <cstdint>
 #include <limits>
 
 #include "geometry/ray.h"
+#include "simd/float4.h"
 
 namespace castray {
 
 /// An axis-aligned box, empty at first, in two vector registers; the fourth lane is free.
 struct Bounds {
-  __m128 lower = _mm_set1_ps(std::numeric_limits<float>::infinity());
-  __m128 upper = _mm_set1_ps(-std::numeric_limits<float>::infinity());
+  Float4 lower{std::numeric_limits<float>::infinity()};
+  Float4 upper{-std::numeric_limits<float>::infinity()};
 
-  void add(__m128 point) { add(point, point); }
-  void add(__m128 other_lower, __m128 other_upper) {
-    lower = _mm_min_ps(lower, other_lower);
-    upper = _mm_max_ps(upper, other_upper);
+  void add(Float4 point) { add(point, point); }
+  void add(Float4 other_lower, Float4 other_upper) {
+    lower = min(lower, other_lower);
+    upper = max(upper, other_upper);
   }
   void add(const Bounds& other) { add(other.lower, other.upper); }
 };
 
-inline Vec3f to_vec3(__m128 v) {
+inline Vec3f to_vec3(Float4 v) {
   alignas(16) float lanes[4];
-  _mm_store_ps(lanes, v);
+  v.store(lanes);
   return {lanes[0], lanes[1], lanes[2]};
 }
 
 /// Half the surface of a box. Zero if it is a point or a segment; meaningless if it is empty.
 inline float half_area(const Bounds& box) {
-  const Vec3f d = to_vec3(_mm_sub_ps(box.upper, box.lower));
+  const Vec3f d = to_vec3(box.upper - box.lower);
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-inline __m128 load_point(const Vec3f& p) { return _mm_setr_ps(p.x, p.y, p.z, 0); }
+inline Float4 load_point(const Vec3f& p) { return {p.x, p.y, p.z, 0}; }
 
 inline Bounds triangle_bounds(const MeshView& mesh, std::uint32_t triangle) {
   Bounds box;

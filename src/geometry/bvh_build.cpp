@@ -241,7 +241,7 @@ class Builder {
   void halve(const Range& range, Range& left, Range& right) {
     PrimRef* const refs = refs_[range.from].get();
     const Bounds centroids = centroid_bounds(range);
-    const Vec3f extent = to_vec3(_mm_sub_ps(centroids.upper, centroids.lower));
+    const Vec3f extent = to_vec3(centroids.upper - centroids.lower);
     const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
     const std::uint32_t middle = range.begin + range.size() / 2;
     const auto key = [axis](const PrimRef& ref) {

@@ -21,12 +21,12 @@ CASTRAY_INLINE void store_some(float* const to[3], const Vec& v, uint32_t i, uin
 
 }  // namespace
 
-void evaluate_bsdfs(const KernelScene& scene, const BsdfBatch& batch) {
+void evaluate_bsdfs(const MaterialTables& tables, const BsdfBatch& batch) {
   constexpr uint32_t features = feature_materials;
   const Uint material = Uint(batch.material * material_floats) | (Uint(batch.front ? 1u : 0u) << 31);
   const Parameters<features> parameters =
-      gather_parameters<features>(scene, Uint(batch.material * material_floats));
-  const Bsdf bsdf = gather_bsdf<features>(scene, material, parameters);
+      gather_parameters<features>(tables, Uint(batch.material * material_floats));
+  const Bsdf bsdf = gather_bsdf<features>(tables, material, parameters);
   for (uint32_t i = 0; i < batch.count; i += width) {
     const Vec wo = load_vec(batch.wo, i, batch.count), wi = load_vec(batch.wi, i, batch.count);
     const Vec u = load_vec(batch.u, i, batch.count);

@@ -1,10 +1,10 @@
 #pragma once
 
+#include "materials/kernel_material.h"
 #include "simd/isa_lanes.h"
-#include "wavefront/kernel_api.h"
 
 namespace castray::CASTRAY_ISA {
 
-void evaluate_bsdfs(const KernelScene& scene, const BsdfBatch& batch);
+void evaluate_bsdfs(const MaterialTables& tables, const BsdfBatch& batch);
 
 }  // namespace castray::CASTRAY_ISA

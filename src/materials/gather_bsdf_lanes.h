@@ -8,8 +8,8 @@ namespace castray::CASTRAY_ISA {
 /// The BSDF of each lane. `material`: the offset of its record, with the top bit where it is seen from the
 /// front.
 template <uint32_t features>
-CASTRAY_INLINE Bsdf gather_bsdf(const KernelScene& scene, Uint material, const Parameters<features>& p) {
-  const KernelMaterial* table = scene.materials;
+CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, const Parameters<features>& p) {
+  const KernelMaterial* table = tables.materials;
   const Uint record = material & 0x7fffffffu;
   const Mask front = (material >> 31) == Uint(1u);
   const Float ior = gather(table, &KernelMaterial::ior, record);
@@ -18,7 +18,7 @@ CASTRAY_INLINE Bsdf gather_bsdf(const KernelScene& scene, Uint material, const P
   b.kd = p.kd();
   b.eta = select(front, ior, Float(1.f) / ior);
   b.albedo = gather(table, &KernelMaterial::albedo, record);
-  b.albedos = scene.albedos;
+  b.albedos = tables.albedos;
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];

@@ -43,8 +43,8 @@ struct KernelMaterial {
   float ior;
   uint32_t type;        ///< MaterialType
   uint32_t traits;      ///< MaterialTrait set
-  uint32_t albedo;      ///< microfacet: offset in floats into KernelScene::albedos
-  uint32_t detail;      ///< index + 1 into KernelScene::details, or 0
+  uint32_t albedo;      ///< microfacet: offset in floats into MaterialTables::albedos
+  uint32_t detail;      ///< index + 1 into MaterialTables::details, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area
 };
 inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
@@ -80,6 +80,25 @@ struct KernelDetail {
   float value[parameter_floats];  ///< as the scene has them
   float least_alpha;              ///< where an image says less
   float mean_albedo[2];  ///< microfacet: the lobe's mean albedo is ks times the first plus the second
+};
+
+/// All materials of a scene.
+struct MaterialTables {
+  const KernelMaterial* materials;
+  const KernelDetail* details;
+  const KernelAlbedo* albedos;
+};
+
+/// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density
+/// of wi, and the sample for the numbers u (lobe, then direction).
+struct BsdfBatch {
+  uint32_t material;  ///< its index
+  bool front;         ///< seen from the side that its normal points to
+  uint32_t count;
+  const float *wo[3], *wi[3], *u[3];
+  float *f_cos[3], *pdf;
+  float *sampled_wi[3], *weight[3], *sampled_pdf, *eta2;
+  float* specular;  ///< 1: the sample is of a perfectly smooth lobe
 };
 
 }  // namespace castray

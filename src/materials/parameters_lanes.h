@@ -1,7 +1,8 @@
 #pragma once
 
+#include "core/contract.h"
+#include "materials/kernel_material.h"
 #include "simd/vec_lanes.h"
-#include "wavefront/kernel_api.h"
 
 // The values of surfaces at points, as vertices and suffixes carry them: arrays to be copied blindly. Kernels
 // without detail carry the colour in slot_kd alone; all else is the material's.
@@ -71,10 +72,10 @@ CASTRAY_INLINE void compress_store(ParameterArray<N>& to, int n, Mask m, const P
 
 /// What the material at offset `record` says itself.
 template <uint32_t features>
-CASTRAY_INLINE Parameters<features> gather_parameters(const KernelScene& scene, Uint record) {
+CASTRAY_INLINE Parameters<features> gather_parameters(const MaterialTables& tables, Uint record) {
   Parameters<features> p;
   for (int k = 0; k < carried_floats<features>; ++k)
-    p.value[k] = gather(fields_of(scene.materials, &KernelMaterial::value) + k, record);
+    p.value[k] = gather(fields_of(tables.materials, &KernelMaterial::value) + k, record);
   return p;
 }
 

@@ -54,22 +54,23 @@ CASTRAY_INLINE void apply_maps(const KernelDetail& d, uint32_t wanted, const Map
 
 /// Calls `work` for each material with details of the lanes in `active`, with the lanes that have it.
 template <class Work>
-CASTRAY_INLINE void for_each_detail(const KernelScene& scene, Uint material, Mask active, Work work) {
-  const Uint details = gather(scene.materials, &KernelMaterial::detail, material);
+CASTRAY_INLINE void for_each_detail(const MaterialTables& tables, Uint material, Mask active, Work work) {
+  const Uint details = gather(tables.materials, &KernelMaterial::detail, material);
   for (uint32_t left = bits(active & ~(details == Uint(0u))); left;) {
     const uint32_t detail = lane(details, __builtin_ctz(left));
     const Mask here = details == Uint(detail);
     left &= ~bits(here);
-    work(scene.details[detail - 1], here);
+    work(tables.details[detail - 1], here);
   }
 }
 
 /// Replaces a material's own values, the vertex_floats from `value` on, by those of the points in its lanes.
-inline __attribute__((noinline)) void resolve_values(const KernelScene& scene, const Uint& material,
+inline __attribute__((noinline)) void resolve_values(const MaterialTables& tables,
+                                                     const TriangleTable& triangles, const Uint& material,
                                                      const TrianglePlace& at, Float* value) {
-  if (none(~(gather(scene.materials, &KernelMaterial::detail, material) == Uint(0u)))) return;
-  const MapInputs in = map_inputs(scene.geometry.tree.triangles, at);
-  for_each_detail(scene, material, Mask(true), [&](const KernelDetail& d, Mask here) {
+  if (none(~(gather(tables.materials, &KernelMaterial::detail, material) == Uint(0u)))) return;
+  const MapInputs in = map_inputs(triangles, at);
+  for_each_detail(tables, material, Mask(true), [&](const KernelDetail& d, Mask here) {
     Float own[parameter_floats];
     for (int k = 0; k < parameter_floats; ++k) own[k] = Float(d.value[k]);
     apply_maps(d, ~0u, in, here, own);
@@ -80,10 +81,11 @@ inline __attribute__((noinline)) void resolve_values(const KernelScene& scene, c
 }
 
 /// The share of the surface that is there at points.
-CASTRAY_INLINE Float coverage_at(const KernelScene& scene, Uint material, const TrianglePlace& at) {
-  Float coverage = gather(scene.materials, &KernelMaterial::coverage, material);
-  const MapInputs in = map_inputs(scene.geometry.tree.triangles, at);
-  for_each_detail(scene, material, Mask(true), [&](const KernelDetail& d, Mask here) {
+CASTRAY_INLINE Float coverage_at(const MaterialTables& tables, const TriangleTable& triangles, Uint material,
+                                 const TrianglePlace& at) {
+  Float coverage = gather(tables.materials, &KernelMaterial::coverage, material);
+  const MapInputs in = map_inputs(triangles, at);
+  for_each_detail(tables, material, Mask(true), [&](const KernelDetail& d, Mask here) {
     Float own[parameter_floats];
     own[slot_coverage] = Float(d.value[slot_coverage]);
     apply_maps(d, 1u << slot_coverage, in, here, own);

@@ -23,11 +23,8 @@ struct FirstHits {
   bool known;  ///< otherwise they are to be found, and nothing rendered
 };
 
-struct KernelScene {
+struct KernelScene : MaterialTables {
   SceneGeometry geometry;
-  const KernelMaterial* materials;
-  const KernelDetail* details;
-  const KernelAlbedo* albedos;
   LightList lights;
   KernelCamera camera;
   FirstHits first_hits;
@@ -74,18 +71,6 @@ struct TileResult {
 using RenderTiles = void (*)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
                              TileResult&);
 
-/// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density
-/// of wi, and the sample for the numbers u (lobe, then direction).
-struct BsdfBatch {
-  uint32_t material;  ///< its index
-  bool front;         ///< seen from the side that its normal points to
-  uint32_t count;
-  const float *wo[3], *wi[3], *u[3];
-  float *f_cos[3], *pdf;
-  float *sampled_wi[3], *weight[3], *sampled_pdf, *eta2;
-  float* specular;  ///< 1: the sample is of a perfectly smooth lobe
-};
-
 /// The functions of one instruction set.
 struct KernelApi {
   const char* name;  ///< "scalar", "sse4", "avx2", "avx512"
@@ -102,8 +87,8 @@ struct KernelApi {
   /// < t < 1.
   void (*facets_closest)(const FacetList&, float slack, const RayBatch&);
   void (*facets_occluded)(const FacetList&, float slack, const ShadowBatch&);
-  /// The lane models of the materials of a scene whose materials and albedos are set, images left out.
-  void (*evaluate_bsdfs)(const KernelScene&, const BsdfBatch&);
+  /// The lane models of a scene's materials, images left out.
+  void (*evaluate_bsdfs)(const MaterialTables&, const BsdfBatch&);
 };
 
 namespace scalar {

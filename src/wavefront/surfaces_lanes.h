@@ -57,7 +57,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     const Vec facing = select(front, x.normal, -x.normal);
     Parameters<features> parameters = gather_parameters<features>(scene, material);
     if constexpr (features & feature_detail)
-      resolve_values(scene, material, {primitive, b1, b2}, parameters.value);
+      resolve_values(scene, scene.geometry.tree.triangles, material, {primitive, b1, b2}, parameters.value);
     const Float arrival = load(paths.arrival + i);
     if (see_emission) {
       const Vec emission = found_emission(scene, material, parameters, front, arrival, t, towards);
