@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "castray/error.h"
+#include "cli/command_help.h"
 #include "core/nearest.h"
 #include "core/text.h"
 
@@ -18,7 +19,7 @@ struct Subcommand {
 };
 
 constexpr Subcommand subcommands[] = {
-    // in the order of use: render, compare, bench, info, merge, convert
+    // in the order of use
     {"render", "render a scene to an image", add_render},
     {"compare", "measure how an image differs from its reference", add_compare},
     {"accept", "make an image the reference", add_accept},
@@ -26,7 +27,34 @@ constexpr Subcommand subcommands[] = {
     {"info", "what a scene holds, what it needs, warnings", add_info},
     {"merge", "add films of disjoint sample ranges", add_merge},
     {"convert", "write an image in another format", add_convert},
+    {"completions", "print what makes a shell complete castray's flags, or the manual page", add_completions},
 };
+
+/// The app of all commands; parsing sets `chosen`.
+std::shared_ptr<CLI::App> make_app(Run& chosen) {
+  const auto app =
+      std::make_shared<CLI::App>("castray renders triangle scenes by path tracing on the CPU.", "castray");
+  app->set_version_flag("--version", "castray " CASTRAY_VERSION);
+  app->require_subcommand(1);
+  for (const Subcommand& subcommand : subcommands) {
+    CLI::App* sub = app->add_subcommand(subcommand.name, subcommand.description);
+    Arguments arguments(*sub);
+    sub->callback([run = subcommand.add(arguments), &chosen] { chosen = run; });
+  }
+  return app;
+}
+
+FlagHelp help_of(const CLI::Option& option) {
+  FlagHelp flag;
+  for (const std::string& name : option.get_snames()) flag.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) flag.names.push_back("--" + name);
+  if (flag.names.empty()) flag.names.push_back(option.get_name());
+  if (option.get_items_expected_max() > 0) flag.metavar = option.get_type_name();
+  flag.help = option.get_description();
+  flag.group = option.get_group();
+  flag.repeatable = option.get_items_expected_max() > 1;
+  return flag;
+}
 
 std::string unknown(const CLI::App& app, const std::string& argument) {
   std::vector<std::string> names;
@@ -74,16 +102,8 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 }  // namespace
 
 Run parse_command_line(int argc, const char* const* argv) {
-  const auto app =
-      std::make_shared<CLI::App>("castray renders triangle scenes by path tracing on the CPU.", "castray");
-  app->set_version_flag("--version", "castray " CASTRAY_VERSION);
-  app->require_subcommand(1);
   Run chosen;
-  for (const Subcommand& subcommand : subcommands) {
-    CLI::App* sub = app->add_subcommand(subcommand.name, subcommand.description);
-    Arguments arguments(*sub);
-    sub->callback([run = subcommand.add(arguments), &chosen] { chosen = run; });
-  }
+  const auto app = make_app(chosen);
   try {
     app->parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -92,6 +112,18 @@ Run parse_command_line(int argc, const char* const* argv) {
     throw InputError(explain(*app, error));
   }
   return [app, chosen] { return chosen(); };
+}
+
+std::vector<CommandHelp> command_helps() {
+  Run unused;
+  const auto app = make_app(unused);
+  std::vector<CommandHelp> commands;
+  for (const CLI::App* sub : app->get_subcommands([](const CLI::App*) { return true; })) {
+    commands.push_back({sub->get_name(), sub->get_description(), sub->get_footer(), {}});
+    for (const CLI::Option* option : sub->get_options())
+      if (option != sub->get_help_ptr()) commands.back().flags.push_back(help_of(*option));
+  }
+  return commands;
 }
 
 }  // namespace castray::cli

@@ -17,5 +17,6 @@ Run add_info(Arguments& arguments);
 Run add_merge(Arguments& arguments);
 Run add_convert(Arguments& arguments);
 Run add_bench(Arguments& arguments);
+Run add_completions(Arguments& arguments);
 
 }  // namespace castray::cli

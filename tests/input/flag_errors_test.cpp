@@ -24,7 +24,7 @@ Case render(std::vector<std::string> flags, const std::string& message) {
 const std::string whole = "must be a whole number between ";
 
 const std::vector<Case> cases = {
-    {{}, "say what to do: render, compare, accept, bench, info, merge, convert; see castray --help"},
+    {{}, "say what to do: render, compare, accept, bench, info, merge, convert, completions; see castray --help"},
     {{"rendr"}, "unknown subcommand 'rendr'; did you mean 'render'?"},
     {{"--versio"}, "unknown flag '--versio'; did you mean '--version'?"},
     {{"info", "--jsn", "s.json"}, "unknown flag '--jsn'; see castray info --help"},
