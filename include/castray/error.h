@@ -12,6 +12,9 @@ struct SourcePlace {
   int column = 0;
 };
 
+/// "FILE:LINE:COL: message", without what is unknown.
+std::string placed(const SourcePlace& place, const std::string& message);
+
 /// Something the user gave (a file, a flag, an environment variable) cannot be used. `what()` is one line,
 /// "FILE:LINE:COL: what is wrong, and what to do", without the program's name. The program exits with 2.
 class InputError : public std::runtime_error {

@@ -37,6 +37,17 @@ struct RenderDefault {
   SourcePlace place;  ///< of the key
 };
 
+/// Something in a scene's files that is missing or odd, and what was done instead of refusing them.
+struct SceneWarning {
+  SourcePlace place;  ///< where it is found first
+  std::string message;
+  bool harmless = false;    ///< the picture is what the files mean
+  std::uint64_t count = 1;  ///< of places
+
+  /// "FILE:LINE: message (N times)".
+  std::string text() const;
+};
+
 inline constexpr int max_image_side = 65536;
 inline constexpr int max_image_pixels = 1 << 28;
 
@@ -52,6 +63,7 @@ struct Scene {
   std::filesystem::path file;  ///< as the user gave it
 
   Camera camera;                  ///< in scene space
+  bool has_camera = false;        ///< its files say which; else it is `automatic_camera`
   int width = 784, height = 784;  ///< image size in pixels
 
   Vec3d center{0, 0, 0};
@@ -79,7 +91,8 @@ struct Scene {
   // What happened while loading, for `info` and for messages.
   std::uint64_t dropped_triangles = 0;    ///< degenerate: zero area, NaN, infinite
   std::vector<std::string> ignored_keys;  ///< "FILE: key", of MTL files
-  std::vector<std::string> warnings;
+  std::vector<SceneWarning> warnings;     ///< in the order in which they were met
+  bool default_environment = false;       ///< the environment is no file's: nothing in the scene emits
 
   static constexpr std::uint32_t no_index = 0xffffffffu;
 
@@ -88,8 +101,9 @@ struct Scene {
   Vec3d to_scene(const Vec3d& p) const { return (p - center) / unit; }
 };
 
-/// A view, in scene space, that frames all of `scene` in its image size, from the front right above (+z, +x,
-/// +y).
+/// A view, in scene space, that frames all of `scene` in its image size. It looks from the front right above
+/// (+z, +x, +y), unless from there it would see much less of what faces a light, or of the surfaces' outward
+/// sides, than from another of ten directions: a room is looked into from its open side.
 Camera automatic_camera(const Scene& scene);
 
 /// Reads a scene .json or an .obj (seen by an automatic view). Throws InputError with the place of the first

@@ -46,22 +46,6 @@ Camera make_camera(const Vec3d& position, const Vec3d& look_at, const Vec3d& up,
   return camera;
 }
 
-Camera automatic_camera(const Scene& scene) {
-  Vec3f low = scene.positions.front(), high = low;
-  for (const Vec3f& p : scene.positions)
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  constexpr double fov = 40;
-  const Vec3d middle = (Vec3d(low) + Vec3d(high)) * 0.5;
-  const double radius = length(Vec3d(high) - Vec3d(low)) * 0.5;
-  const double narrower = std::min(1.0, static_cast<double>(scene.width) / scene.height);
-  const double half_angle = std::atan(std::tan(fov * std::numbers::pi / 360) * narrower);
-  const Vec3d towards_viewer = normalize(Vec3d{0.5, 0.4, 1});
-  return make_camera(middle + towards_viewer * (radius / std::sin(half_angle)), middle, {0, 1, 0}, fov);
-}
-
 KernelCamera kernel_camera(const Camera& camera, int width, int height) {
   KernelCamera k{};
   const Vec3d corner = camera.direction(0, 0, width, height);

@@ -10,6 +10,7 @@
 #include "castray/scene.h"
 #include "cli/commands.h"
 #include "cli/image_info.h"
+#include "cli/scene_report.h"
 #include "core/text.h"
 #include "geometry/build_quality.h"
 #include "materials/descriptor.h"
@@ -55,14 +56,8 @@ void print_bounds(const Scene& scene) {
       low[i] = std::min(low[i], p[i]);
       high[i] = std::max(high[i], p[i]);
     }
-  // Coordinates are known to half a float's last digit; what is less than that is shown as 0.
-  const auto world = [&](const Vec3f& corner) {
-    Vec3d p = scene.to_world(Vec3d(corner));
-    for (int i = 0; i < 3; ++i)
-      if (std::abs(p[i]) < scene.unit * 0x1p-24) p[i] = 0;
-    return text_of(p);
-  };
-  fmt::print("bounds     {} .. {}\n", world(low), world(high));
+  const auto corner = [&](const Vec3f& p) { return world_point(scene, Vec3d(p), ", "); };
+  fmt::print("bounds     ({}) .. ({})\n", corner(low), corner(high));
 }
 
 void print_geometry(const Scene& scene) {
@@ -81,7 +76,9 @@ void print_lights(const Scene& scene) {
   fmt::print("lights     {} triangles", scene.lights.size());
   for (std::uint16_t m : emitters)
     fmt::print("{} {}", m == *emitters.begin() ? ":" : ",", printable(scene.materials[m].name));
-  if (max_component(scene.environment) > 0) fmt::print("; environment {}", text_of(scene.environment));
+  if (max_component(scene.environment) > 0)
+    fmt::print("; environment {}{}", text_of(scene.environment),
+               scene.default_environment ? ", as nothing in the scene emits" : "");
   fmt::print("\n");
 }
 
@@ -105,10 +102,13 @@ int print_info(const std::string& file) {
   print_geometry(scene);
   print_lights(scene);
   fmt::print("image      {} x {}\n", scene.width, scene.height);
+  fmt::print("view       {}\n           {}\n", view_flags(scene), view_json(scene));
   print_materials(scene);
   print_plan(scene);
   for (const std::string& key : scene.ignored_keys) fmt::print("ignored    {}\n", key);
-  for (const std::string& warning : scene.warnings) fmt::print("warning    {}\n", warning);
+  for (const SceneWarning& warning : scene.warnings)
+    fmt::print("{}    {}\n", warning.harmless ? "note   " : "warning", warning.text());
+  if (is_dark(scene)) fmt::print("warning    {}: {}\n", file, dark_scene);
   return 0;
 }
 

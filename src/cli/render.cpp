@@ -128,8 +128,7 @@ int render_scene(const RenderCommand& command) {
   Scene scene = load_scene(command.scene);
   RenderRequest request = request_of(command, scene);
   check(request);
-  if (request.options.width > 0) scene.width = request.options.width, scene.height = request.options.height;
-  scene.camera = camera_of(request.camera, scene);
+  apply_flags(request, scene);
   RenderReport report{scene, request.options, command.given};
   report.load_seconds = seconds_since(begin);
   if (!request.quiet) report.print_scene(request.verbose);
@@ -139,6 +138,7 @@ int render_scene(const RenderCommand& command) {
   write_results(request, report);
   report.total_seconds = seconds_since(begin);
   report.print_nonfinite();
+  if (!request.quiet) report.print_black();
   if (!request.quiet) report.print_summary(request.outputs);
   return exit_code(request, report.result.stats.stopped);
 }

@@ -83,6 +83,16 @@ void set_reuse(Request r, Text flag, Text text) {
   r.options.reuse.suffixes = number(parts[1], longest * longest);
 }
 
+void set_environment(Request r, Text flag, Text text) {
+  r.scene.environment = Vec3d{};
+  if (text == "off") return;
+  if (split(text, ',').size() != 3)
+    refuse(flag, text, "R,G,B or off; an image around the scene is not read yet");
+  r.scene.environment = parse_vector(flag, text);
+  for (int i = 0; i < 3; ++i)
+    if ((*r.scene.environment)[i] < 0) refuse(flag, text, "at least 0 in each of R,G,B");
+}
+
 constexpr const char* sampling = "Samples";
 constexpr const char* image = "Image";
 constexpr const char* estimator = "Estimator";
@@ -90,6 +100,7 @@ constexpr const char* machine = "Machine";
 constexpr const char* stopping = "Stopping and resuming";
 constexpr const char* output = "Output";
 constexpr const char* view = "View (else the scene's; an .obj gets an automatic one)";
+constexpr const char* lighting = "Scene";
 
 const RenderFlag flags[] = {
     {"spp", "N", "samples per pixel [scene's, else 64]", sampling,
@@ -111,14 +122,20 @@ const RenderFlag flags[] = {
     {"size", "WxH", "image size in pixels [scene's]", image, set_size},
     {"crop", "X0,Y0,X1,Y1", "the window x0 <= x < x1, y0 <= y < y1 only, as an image of its own size", image,
      set_crop, false},
-    {"camera-position", "X,Y,Z", "where the camera is", view,
-     [](Request r, Text f, Text t) { r.camera.position = parse_vector(f, t); }, false},
+    {"look-from", "X,Y,Z", "where the camera is", view,
+     [](Request r, Text f, Text t) { r.scene.camera.position = parse_vector(f, t); }, false},
     {"look-at", "X,Y,Z", "where it looks [the scene's middle]", view,
-     [](Request r, Text f, Text t) { r.camera.look_at = parse_vector(f, t); }, false},
-    {"up", "X,Y,Z", "[0,1,0]", view, [](Request r, Text f, Text t) { r.camera.up = parse_vector(f, t); },
-     false},
+     [](Request r, Text f, Text t) { r.scene.camera.look_at = parse_vector(f, t); }, false},
+    {"up", "X,Y,Z", "[0,1,0]", view,
+     [](Request r, Text f, Text t) { r.scene.camera.up = parse_vector(f, t); }, false},
     {"fov", "DEGREES", "vertical field of view [40]", view,
-     [](Request r, Text f, Text t) { r.camera.fov = parse_number(f, t); }, false},
+     [](Request r, Text f, Text t) { r.scene.camera.fov = parse_number(f, t); }, false},
+    {"environment", "R,G,B|off", "radiance from all around [the scene's; 1,1,1 where nothing emits]",
+     lighting, set_environment, false},
+    {"two-sided-lights", nullptr, "all lights shine on both sides", lighting,
+     [](Request r, Text f, Text t) { r.scene.two_sided_lights = parse_on_off(f, t); }, false},
+    {"strict", nullptr, "what is missing or odd in the scene's files is an error", lighting,
+     [](Request r, Text f, Text t) { r.scene.strict = parse_on_off(f, t); }, false},
 
     {"integrator", "wavefront|reference",
      "the fast one, or the recursive castRay [wavefront; with --epsilon reference]", estimator,
@@ -248,9 +265,12 @@ PreparedScene prepare(const Scene& scene, const RenderRequest& request) {
   return PreparedAccess::prepare(scene, request.options, request.fault);
 }
 
-Camera camera_of(const CameraFlags& given, Scene& scene) {
+namespace {
+
+/// The scene's camera, or the one that the flags describe. The image's size is final.
+Camera camera_of(const CameraFlags& given, const Scene& scene) {
   if (!given.position && !given.look_at && !given.up && !given.fov)
-    return suffix_of(scene.file) == ".obj" ? automatic_camera(scene) : scene.camera;
+    return scene.has_camera ? scene.camera : automatic_camera(scene);
   const Camera& own = scene.camera;
   const Vec3d position = given.position ? scene.to_scene(*given.position) : own.position;
   const Vec3d look_at = given.look_at    ? scene.to_scene(*given.look_at)
@@ -259,6 +279,19 @@ Camera camera_of(const CameraFlags& given, Scene& scene) {
   const double own_fov = std::atan(own.tan_half_fov) * 360 / std::numbers::pi;
   return make_camera(position, look_at, given.up.value_or(given.position ? Vec3d(0, 1, 0) : own.up),
                      given.fov.value_or(own_fov));
+}
+
+}  // namespace
+
+void apply_flags(const RenderRequest& request, Scene& scene) {
+  const SceneFlags& flags = request.scene;
+  if (flags.strict && !scene.warnings.empty())
+    throw InputError(scene.warnings.front().place, scene.warnings.front().message);
+  if (request.options.width > 0) scene.width = request.options.width, scene.height = request.options.height;
+  scene.camera = camera_of(flags.camera, scene);
+  if (flags.environment) scene.environment = *flags.environment, scene.default_environment = false;
+  if (flags.two_sided_lights)
+    for (Material& material : scene.materials) material.two_sided_emission |= material.emits();
 }
 
 }  // namespace castray::cli

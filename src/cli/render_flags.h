@@ -21,10 +21,18 @@ struct CameraFlags {
   std::optional<double> fov;
 };
 
+/// What the flags change of the scene that its files tell.
+struct SceneFlags {
+  CameraFlags camera;
+  std::optional<Vec3d> environment;
+  bool two_sided_lights = false;
+  bool strict = false;  ///< warnings of the scene's files are errors
+};
+
 /// Everything that the flags of `castray render` say.
 struct RenderRequest {
   RenderOptions options;
-  CameraFlags camera;
+  SceneFlags scene;
   Fault fault = Fault::none;
   Display display;
   std::vector<std::filesystem::path> outputs;
@@ -53,7 +61,8 @@ void apply_defaults(RenderRequest& request, const Scene& scene);
 /// The scene made ready for the request.
 PreparedScene prepare(const Scene& scene, const RenderRequest& request);
 
-/// The scene's camera, or the one that the flags describe. `image_width` and `image_height` are final.
-Camera camera_of(const CameraFlags& flags, Scene& scene);
+/// Gives the scene the size, view, environment and sides of lights of the flags. Throws InputError where its
+/// files have warnings and --strict is given.
+void apply_flags(const RenderRequest& request, Scene& scene);
 
 }  // namespace castray::cli

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "cli/black_film.h"
+#include "cli/scene_report.h"
 #include "cli/shell_word.h"
 
 namespace castray::cli {
@@ -44,14 +46,39 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
+void RenderReport::print_warnings(bool verbose) const {
+  constexpr int most = 20;
+  int told = 0, left = 0;
+  for (const SceneWarning& warning : scene.warnings) {
+    if (warning.harmless && !verbose) continue;
+    if (told < most || verbose)
+      fmt::print(stderr, "castray: warning: {}\n", warning.text());
+    else
+      ++left;
+    ++told;
+  }
+  if (left > 0)
+    fmt::print(stderr, "castray: {} more warnings: see castray info {}\n", left, scene.file.string());
+}
+
 void RenderReport::print_scene(bool verbose) const {
-  for (const std::string& warning : scene.warnings)
-    fmt::print(stderr, "castray: warning: {}: {}\n", scene.file.string(), warning);
+  print_warnings(verbose);
+  if (scene.default_environment)
+    fmt::print(stderr,
+               "castray: nothing in {} emits light, so a white sky does; --environment R,G,B|off decides\n",
+               scene.file.string());
+  else if (is_dark(scene))
+    fmt::print(stderr, "castray: warning: {}: {}\n", scene.file.string(), dark_scene);
   if (!verbose) return;
   fmt::print(stderr, "castray: {}: {} triangles, {} of them lights, {} materials; read in {:.3f} s\n",
              scene.file.string(), scene.triangles.size(), scene.lights.size(), scene.materials.size(),
              load_seconds);
   for (const std::string& key : scene.ignored_keys) fmt::print(stderr, "castray: ignored: {}\n", key);
+}
+
+void RenderReport::print_black() const {
+  if (is_dark(scene) || !is_black(result.film)) return;
+  fmt::print(stderr, "castray: warning: the image is black: {}\n", why_black(scene, options));
 }
 
 void RenderReport::print_nonfinite() const {

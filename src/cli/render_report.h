@@ -26,6 +26,7 @@ struct RenderReport {
 
   void print_scene(bool verbose) const;
   void print_nonfinite() const;
+  void print_black() const;  ///< where the image is black though something emits: why
   void print_summary(const std::vector<std::filesystem::path>& outputs) const;
 
   /// The contents of a --stats file.
@@ -34,6 +35,7 @@ struct RenderReport {
   Metadata metadata() const;
 
  private:
+  void print_warnings(bool verbose) const;
   void print_expected_error() const;
   std::uint64_t spp() const;  ///< on average, with a target error
   /// The command that renders one sample again, alone.

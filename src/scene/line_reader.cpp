@@ -5,18 +5,11 @@
 #include <charconv>
 
 #include "core/text.h"
+#include "scene/names.h"
 
 namespace castray {
 
 namespace {
-
-constexpr bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\0'; }
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// Takes the first line off `text`, its end included.
 std::string_view take_line(std::string_view& text) {
@@ -26,6 +19,13 @@ std::string_view take_line(std::string_view& text) {
   if (end < text.size()) end += text.substr(end).starts_with("\r\n") ? 2 : 1;
   text.remove_prefix(end);
   return line;
+}
+
+/// By its byte order mark, or by the zero byte of its first ASCII letters.
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
+         (text.size() >= 4 && (text[0] == 0) != (text[1] == 0) && (text[0] == 0) == (text[2] == 0) &&
+          (text[1] == 0) == (text[3] == 0));
 }
 
 }  // namespace
@@ -40,7 +40,17 @@ std::optional<double> parse_number(std::string_view word, bool* out_of_range) {
 }
 
 LineReader::LineReader(std::string_view text, const std::string& file)
-    : text_(without_bom(text)), file_(file) {}
+    : text_(without_bom(text)), file_(file) {
+  if (is_utf16(text)) throw InputError(SourcePlace{file}, "is UTF-16; save it as UTF-8");
+}
+
+void LineReader::fail(const std::string& what) const {
+  SourcePlace where = place();
+  if (line_begin_)
+    for (const char* c = line_begin_; c <= word_begin_; ++c)
+      where.column += c == word_begin_ || (static_cast<unsigned char>(*c) & 0xc0) != 0x80;  // characters
+  throw InputError(where, what);
+}
 
 void LineReader::join_continued_lines() {
   joined_.clear();
@@ -52,6 +62,7 @@ void LineReader::join_continued_lines() {
   }
   joined_ += line_;
   line_ = joined_;
+  line_begin_ = nullptr;
 }
 
 bool LineReader::next_line() {
@@ -60,9 +71,12 @@ bool LineReader::next_line() {
     line_ = take_line(text_);
     if (line_number_ == 0) line_number_ = 1;
     lines_used_ = 1;
-    if (line_.ends_with('\\')) join_continued_lines();
+    line_begin_ = line_.data();
+    const bool is_comment = trimmed(line_).starts_with('#');
+    if (line_.ends_with('\\') && !is_comment) join_continued_lines();
     line_ = trimmed(line_);
-    if (!line_.empty() && line_.front() != '#') return true;
+    word_begin_ = line_.data();
+    if (!line_.empty() && !is_comment) return true;
   }
   return false;
 }
@@ -74,6 +88,7 @@ std::string_view LineReader::word() {
   std::size_t end = begin;
   while (end < line_.size() && !is_space(line_[end])) ++end;
   const std::string_view found = line_.substr(begin, end - begin);
+  word_begin_ = found.data();
   line_.remove_prefix(end);
   return found;
 }
@@ -87,6 +102,7 @@ std::string_view LineReader::peek() {
 
 std::string_view LineReader::rest() {
   const std::string_view found = trimmed(line_);
+  word_begin_ = found.data();
   line_ = {};
   return found;
 }

@@ -16,6 +16,7 @@ std::optional<double> parse_number(std::string_view word, bool* out_of_range = n
 /// backslash in front of the line's end continues it; a '#' in front of a word begins a comment.
 class LineReader {
  public:
+  /// Throws InputError where the text is UTF-16.
   LineReader(std::string_view text, const std::string& file);
 
   /// Goes to the next line that holds anything. False at the end.
@@ -33,14 +34,19 @@ class LineReader {
   std::optional<double> number(std::string_view of);
   double required_number(std::string_view of);
 
+  /// The line, without a column.
   SourcePlace place() const { return {file_, line_number_, 0}; }
-  [[noreturn]] void fail(const std::string& what) const { throw InputError(place(), what); }
+  /// Throws InputError at the word that was read last.
+  [[noreturn]] void fail(const std::string& what) const;
 
  private:
   void join_continued_lines();
 
-  std::string_view text_, line_;
-  std::string joined_;  ///< the line, where it is continued
+  std::string_view text_;
+  std::string_view line_;             ///< what is left of the line
+  const char* line_begin_ = nullptr;  ///< of the whole line; null where it is continued
+  const char* word_begin_ = nullptr;  ///< of the word that was read last
+  std::string joined_;                ///< the line, where it is continued
   std::string file_;
   int line_number_ = 0, lines_used_ = 0;
 };

@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "core/nearest.h"
 #include "core/text.h"
 #include "materials/descriptor.h"
-#include "scene/mtl_file.h"
+#include "scene/file_finder.h"
 
 namespace castray {
 
@@ -29,7 +31,8 @@ class MaterialReader {
     std::vector<std::string_view> all_keys{"type"}, type_names;
     for (const MaterialDescriptor* known : material_descriptors()) {
       type_names.push_back(known->name);
-      for (const MaterialKey& key : known->keys) all_keys.push_back(key.name);
+      for (const MaterialKey& key : known->keys)
+        if (std::ranges::find(all_keys, key.name) == all_keys.end()) all_keys.push_back(key.name);
     }
     const std::string name = fmt::format("material '{}'", printable(node_.key));
     // First the type, as the keys depend on it.

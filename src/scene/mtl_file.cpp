@@ -5,162 +5,162 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "core/files.h"
 #include "core/text.h"
 #include "scene/line_reader.h"
-#include "scene/texture_statement.h"
+#include "scene/names.h"
 
 namespace castray {
 
 namespace {
 
-/// What an MTL file says of one material.
-struct MtlMaterial {
-  std::string name;
-  std::optional<Vec3d> kd{};
-  Vec3d ks{}, ke{};
-  std::optional<double> ns{}, ni{}, roughness{}, metallic{};
-  std::optional<int> illum{};
-  TextureMap kd_map{};
+constexpr double no_limit = std::numeric_limits<double>::max();
+
+struct ColorKey {
+  std::string_view key;
+  std::optional<Vec3d> MtlMaterial::*color;
+  double greatest;
+};
+constexpr ColorKey color_keys[] = {{"kd", &MtlMaterial::kd, 1},
+                                   {"ks", &MtlMaterial::ks, 1},
+                                   {"ke", &MtlMaterial::ke, no_limit},
+                                   {"tf", &MtlMaterial::tf, 1}};
+
+struct NumberKey {
+  std::string_view key;
+  std::optional<double> MtlMaterial::*number;
+  double greatest;
+};
+constexpr NumberKey number_keys[] = {
+    {"ns", &MtlMaterial::ns, no_limit}, {"ni", &MtlMaterial::ni, no_limit},
+    {"d", &MtlMaterial::dissolve, 1},   {"tr", &MtlMaterial::transparency, 1},
+    {"pr", &MtlMaterial::roughness, 1}, {"pm", &MtlMaterial::metallic, 1},
 };
 
-/// The first that fits of conductor, dielectric, microfacet, diffuse.
-Material to_material(const MtlMaterial& mtl) {
-  const auto illum_is = [&](std::initializer_list<int> models) {
-    return mtl.illum && std::ranges::find(models, *mtl.illum) != models.end();
-  };
-  const bool shines = max_component(mtl.ks) > 0;
-  Material material;
-  material.name = mtl.name;
-  material.ke = mtl.ke;
-  material.map(SurfaceParameter::kd) = mtl.kd_map;
-  if (mtl.kd)
-    material.kd = *mtl.kd;
-  else if (mtl.kd_map.used())
-    material.kd = Vec3d(1.0);
-  if (mtl.roughness)
-    material.alpha = *mtl.roughness * *mtl.roughness;
-  else if (mtl.ns)
-    material.alpha = std::min(1.0, std::sqrt(2 / (*mtl.ns + 2)));
-  if (illum_is({3, 5}) || mtl.metallic == 1.0) {
-    material.type = MaterialType::conductor;
-    // A metal's colour is Kd in the Pm convention, Ks in the classic one.
-    material.reflectance = mtl.metallic == 1.0 ? material.kd : shines ? mtl.ks : material.reflectance;
-    if (!mtl.roughness && !mtl.ns) material.alpha = 0;
-  } else if (illum_is({4, 6, 7, 9}) && mtl.ni && *mtl.ni > 1) {
-    material.type = MaterialType::dielectric;
-    material.ior = *mtl.ni;
-    if (!mtl.roughness)
-      material.alpha = 0;  // Ns of glass is the width of a highlight drawn on it, not of its surface
-  } else if (shines && (mtl.ns || mtl.roughness)) {
-    material.type = MaterialType::microfacet;
-    material.ks = mtl.ks;
-  }
-  return material;
-}
+struct MapKey {
+  std::string_view key;
+  MtlMap map;
+};
+constexpr MapKey map_keys[] = {
+    {"map_kd", MtlMap::kd},        {"map_ks", MtlMap::ks},
+    {"map_ke", MtlMap::ke},        {"map_ns", MtlMap::ns},
+    {"map_pr", MtlMap::roughness}, {"map_pm", MtlMap::metallic},
+    {"map_d", MtlMap::dissolve},   {"map_opacity", MtlMap::dissolve},
+    {"norm", MtlMap::normal},      {"map_kn", MtlMap::normal},
+    {"map_bump", MtlMap::bump},    {"bump", MtlMap::bump},
+};
+
+/// What would change the picture, but is not done: numbers unless they are 0, and images.
+constexpr std::string_view numbers_not_done[] = {"ps", "pc", "aniso"};
+constexpr std::string_view maps_not_done[] = {"map_ps",     "map_pc", "map_pcr",  "map_aniso",
+                                              "map_anisor", "disp",   "map_disp", "decal"};
 
 class MtlReader {
  public:
-  MtlReader(std::string_view text, const std::filesystem::path& file, SceneBuilder& builder)
-      : file_(file), builder_(builder), lines_(text, file.string()) {}
+  MtlReader(std::string_view text, const std::filesystem::path& file, WarningList& warnings)
+      : warnings_(warnings), lines_(text, file.string()) {
+    mtl_.path = file;
+    const std::string_view first = trimmed(without_bom(text).substr(0, text.find_first_of("\r\n")));
+    mtl_.from_blender = first.starts_with('#') && first.find("Blender") != first.npos;
+  }
 
-  std::vector<std::uint16_t> read() {
+  MtlFile read() {
     while (lines_.next_line()) read_statement();
-    std::vector<std::uint16_t> indices;
-    for (const MtlMaterial& material : materials_)
-      indices.push_back(builder_.add_material(to_material(material)));
-    return indices;
+    return std::move(mtl_);
   }
 
  private:
-  // clang-format off
+  void warn(const std::string& message, Harm harm = Harm::changes_picture) {
+    warnings_.add(lines_.place(), message, harm);
+  }
+
+  /// Keys count in letters of either case: some exporters write "map_kd" or "ni".
   void read_statement() {
     const std::string key(lines_.word());
-    if (key == "newmtl") return begin_material();
-    if (materials_.empty()) lines_.fail(fmt::format("'{}' in front of the first newmtl", printable(key)));
-    MtlMaterial& material = materials_.back();
-    if (key == "Kd") material.kd = color(key, 1);
-    else if (key == "Ks") material.ks = color(key, 1);
-    else if (key == "Ke") material.ke = color(key, no_limit);
-    else if (key == "Ns") material.ns = number(key, no_limit);
-    else if (key == "Ni") material.ni = number(key, no_limit);
-    else if (key == "Pr") material.roughness = number(key, 1);
-    else if (key == "Pm") material.metallic = number(key, 1);
-    else if (key == "illum") material.illum = static_cast<int>(number(key, 10));
-    else if (key == "map_Kd") read_texture(material);
-    else builder_.ignore(file_, key);
-  }
-  // clang-format on
-
-  static constexpr double no_limit = std::numeric_limits<double>::max();
-
-  double check(const std::string& key, double value, double greatest) {
-    if (value >= 0 && value <= greatest) return value;
-    lines_.fail(greatest == no_limit ? fmt::format("{} must be finite and at least 0, not {}", key, value)
-                                     : fmt::format("{} must be in 0 .. {}, not {}", key, greatest, value));
-  }
-
-  double number(const std::string& key, double greatest) {
-    return check(key, lines_.required_number(key), greatest);
-  }
-
-  /// One number stands for three.
-  Vec3d color(const std::string& key, double greatest) {
-    const double red = number(key, greatest);
-    const std::optional<double> green = lines_.number(key);
-    if (!green) return Vec3d(red);
-    check(key, *green, greatest);
-    return {red, *green, number(key, greatest)};
+    const std::string name = lower_case(key);
+    if (name == "newmtl") return begin_material();
+    if (mtl_.materials.empty())
+      return warn(fmt::format("'{}' in front of the first newmtl is left out", printable(key)));
+    MtlMaterial& material = mtl_.materials.back();
+    if (name == "illum") return read_illum(material);
+    if (const auto k = std::ranges::find(color_keys, name, &ColorKey::key); k != std::end(color_keys))
+      return read_color(key, material.*(k->color), k->greatest);
+    if (const auto k = std::ranges::find(number_keys, name, &NumberKey::key); k != std::end(number_keys))
+      return read_number(key, material.*(k->number), k->greatest);
+    if (const auto k = std::ranges::find(map_keys, name, &MapKey::key); k != std::end(map_keys))
+      return read_map(key, material.map(k->map));
+    if (std::ranges::find(maps_not_done, name) != std::end(maps_not_done) ||
+        (std::ranges::find(numbers_not_done, name) != std::end(numbers_not_done) &&
+         lines_.required_number(key) != 0))
+      return warn(key + " is not done");
+    if (std::ranges::find(mtl_.ignored, key) == mtl_.ignored.end() && mtl_.ignored.size() < most_ignored)
+      mtl_.ignored.push_back(key);
   }
 
   void begin_material() {
     const std::string name(lines_.rest());
-    if (name.empty()) lines_.fail("newmtl needs a name");
-    if (materials_.size() > std::numeric_limits<std::uint16_t>::max())
-      lines_.fail("too many materials; use fewer");
-    materials_.push_back({.name = name});
+    if (name.empty()) warn("newmtl without a name", Harm::none);
+    mtl_.materials.push_back({.name = name, .place = lines_.place()});
   }
 
-  void read_texture(MtlMaterial& material) {
-    const TextureStatement texture = read_texture_statement(lines_);
-    for (const std::string& option : texture.ignored_options) builder_.ignore(file_, "map_Kd " + option);
-    const std::filesystem::path path = resolve_path(texture.file, file_);
-    if (!is_file(path)) lines_.fail(fmt::format("map_Kd: no such file: {}", printable(path.string())));
-    material.kd_map = texture.map;
-    material.kd_map.texture = builder_.add_texture(path, ColorSpace::srgb);
+  /// Takes a number into 0 .. greatest, with a warning where it is outside.
+  double in_range(const std::string& key, double value, double greatest) {
+    if (!std::isfinite(value)) lines_.fail(fmt::format("{} must be finite, not {}", key, value));
+    if (value >= 0 && value <= greatest) return value;
+    const double nearest = std::clamp(value, 0.0, greatest);
+    warn(greatest == no_limit ? fmt::format("{} below 0: read as 0", key)
+                              : fmt::format("{} outside 0 .. {}: clamped", key, greatest));
+    return nearest;
   }
 
-  std::filesystem::path file_;
-  SceneBuilder& builder_;
+  /// One number stands for three.
+  void read_color(const std::string& key, std::optional<Vec3d>& color, double greatest) {
+    if (const std::string_view form = lines_.peek(); form == "spectral" || form == "xyz")
+      return warn(fmt::format("{} {} is not read", key, form));
+    const double red = in_range(key, lines_.required_number(key), greatest);
+    color = Vec3d(red);
+    const std::optional<double> green = lines_.number(key);
+    if (!green) return;
+    color->y = in_range(key, *green, greatest);
+    color->z = in_range(key, lines_.required_number(key), greatest);
+  }
+
+  void read_number(const std::string& key, std::optional<double>& number, double greatest) {
+    if (lines_.peek() == "-halo") {
+      lines_.word();
+      warn(fmt::format("{} -halo is read as {}", key, key));
+    }
+    number = in_range(key, lines_.required_number(key), greatest);
+  }
+
+  void read_illum(MtlMaterial& material) {
+    const double model = lines_.required_number("illum");
+    if (!(model >= 0 && model <= 10)) return warn("illum outside 0 .. 10 is left out");
+    material.illum = static_cast<int>(model);
+  }
+
+  void read_map(const std::string& key, std::optional<TextureStatement>& map) {
+    TextureStatement statement = read_texture_statement(key, lines_);
+    if (statement.file.empty()) return warn(fmt::format("{} without a file name is left out", key));
+    map = std::move(statement);
+  }
+
+  static constexpr std::size_t most_ignored = 100;
+
+  WarningList& warnings_;
   LineReader lines_;
-  std::vector<MtlMaterial> materials_;
+  MtlFile mtl_;
 };
 
 }  // namespace
 
-std::vector<std::uint16_t> parse_mtl(std::string_view text, const std::filesystem::path& file,
-                                     SceneBuilder& builder) {
-  return MtlReader(text, file, builder).read();
+MtlFile parse_mtl(std::string_view text, const std::filesystem::path& file, WarningList& warnings) {
+  return MtlReader(text, file, warnings).read();
 }
 
-std::vector<std::uint16_t> read_mtl(const std::filesystem::path& file, SceneBuilder& builder) {
-  return parse_mtl(read_file(file), file, builder);
-}
-
-bool is_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  return std::filesystem::exists(status) && !std::filesystem::is_directory(status);
-}
-
-std::filesystem::path resolve_path(std::string_view name, const std::filesystem::path& named_in) {
-  const std::filesystem::path folder = named_in.parent_path();
-  if (std::filesystem::path as_written = folder / name; is_file(as_written)) return as_written;
-  std::string slashes(name);
-  std::ranges::replace(slashes, '\\', '/');
-  return folder / slashes;
+MtlFile read_mtl(const std::filesystem::path& file, WarningList& warnings) {
+  return parse_mtl(read_file(file), file, warnings);
 }
 
 }  // namespace castray

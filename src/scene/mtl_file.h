@@ -1,24 +1,45 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "scene/scene_builder.h"
+#include "castray/vec.h"
+#include "scene/texture_statement.h"
+#include "scene/warning_list.h"
 
 namespace castray {
 
-/// Reads the materials of an MTL file, or of the text that is its content, by the mapping that docs/scenes.md
-/// describes, adds them to the builder, and returns their indices. Keys that mean nothing here go to
-/// Scene::ignored_keys.
-std::vector<std::uint16_t> parse_mtl(std::string_view text, const std::filesystem::path& file,
-                                     SceneBuilder& builder);
-std::vector<std::uint16_t> read_mtl(const std::filesystem::path& file, SceneBuilder& builder);
+/// The images of a material, by what they change.
+enum class MtlMap : unsigned char { kd, ks, ke, ns, roughness, metallic, dissolve, normal, bump };
+inline constexpr int mtl_maps = 9;
 
-/// Whether there is something at that path that is no folder.
-bool is_file(const std::filesystem::path& path);
+/// What an MTL file says of one material; scene/mtl_material.h says what that means.
+struct MtlMaterial {
+  std::string name;
+  SourcePlace place;
+  std::optional<Vec3d> kd{}, ks{}, ke{}, tf{};
+  std::optional<double> ns{}, ni{}, dissolve{}, transparency{}, roughness{}, metallic{};
+  std::optional<int> illum{};
+  std::array<std::optional<TextureStatement>, mtl_maps> maps{};
 
-/// A path as MTL and OBJ files write it, backslashes included, relative to the file that names it.
-std::filesystem::path resolve_path(std::string_view name, const std::filesystem::path& named_in);
+  const std::optional<TextureStatement>& map(MtlMap m) const { return maps[static_cast<std::size_t>(m)]; }
+  std::optional<TextureStatement>& map(MtlMap m) { return maps[static_cast<std::size_t>(m)]; }
+};
+
+struct MtlFile {
+  std::filesystem::path path;
+  bool from_blender = false;  ///< by the comment in its first line
+  std::vector<MtlMaterial> materials;
+  std::vector<std::string> ignored;  ///< keys that mean nothing here, each once
+};
+
+/// Reads an MTL file, or the text that is its content. Warns of what is odd; throws InputError with file,
+/// line and column of what is broken.
+MtlFile parse_mtl(std::string_view text, const std::filesystem::path& file, WarningList& warnings);
+MtlFile read_mtl(const std::filesystem::path& file, WarningList& warnings);
 
 }  // namespace castray

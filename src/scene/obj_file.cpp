@@ -2,14 +2,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
-#include <map>
+#include <limits>
+#include <optional>
+#include <unordered_map>
 
+#include "castray/image.h"
 #include "core/files.h"
-#include "core/nearest.h"
 #include "core/text.h"
 #include "scene/line_reader.h"
-#include "scene/mtl_file.h"
 #include "scene/polygon.h"
 
 namespace castray {
@@ -21,18 +23,41 @@ struct Corner {
   std::uint32_t position = Scene::no_index, uv = Scene::no_index, normal = Scene::no_index;
 };
 
+/// What may be odd about a great many lines.
+enum class Oddity : unsigned char {
+  uv_index_0,
+  normal_index_0,
+  no_uvs,
+  no_normals,
+  few_corners,
+  wound_against_normals
+};
+constexpr const char* oddities[] = {
+    "texture coordinate index 0 is read as none",
+    "normal index 0 is read as none",
+    "a face names texture coordinates, but there are none before it; it gets none",
+    "a face names normals, but there are none before it; it gets none",
+    "a face of fewer than 3 corners is left out",
+    "a triangle's three vn oppose the order of its corners, which is turned round",
+};
+
 class ObjReader {
   static constexpr std::size_t most_corners =
       1 << 20;  ///< of a face: bounds what one line can make of memory and time
 
  public:
-  ObjReader(std::string_view text, const std::filesystem::path& file, const ObjOptions& options,
-            SceneBuilder& builder)
-      : file_(file), options_(options), builder_(builder), lines_(text, file.string()) {}
+  ObjReader(std::string_view text, const std::filesystem::path& file, WarningList& warnings)
+      : warnings_(warnings), lines_(text, file.string()) {
+    obj_.path = file;
+  }
 
-  Mesh read() {
+  ObjFile read() {
     while (lines_.next_line()) read_statement();
-    return std::move(mesh_);
+    store_smoothing();
+    finish_colors();
+    for (std::size_t i = 0; i < std::size(oddities); ++i)
+      if (odd_[i].count > 0) warnings_.add(odd_[i].place, oddities[i], Harm::changes_picture, odd_[i].count);
+    return std::move(obj_);
   }
 
  private:
@@ -46,11 +71,18 @@ class ObjReader {
       read_normal();
     else if (key == "vt")
       read_uv();
+    else if (key == "s")
+      read_smoothing();
     else if (key == "usemtl")
       use_material();
     else if (key == "mtllib")
-      read_materials();
+      read_libraries();
     // Lines, points, groups, curves: nothing to render.
+  }
+
+  void note(Oddity oddity) {
+    Met& met = odd_[static_cast<std::size_t>(oddity)];
+    if (met.count++ == 0) met.place = lines_.place();
   }
 
   Vec3d read_vector(std::string_view key) {
@@ -59,7 +91,41 @@ class ObjReader {
     return {x, y, lines_.required_number(key)};
   }
 
-  void read_position() { mesh_.positions.push_back(read_vector("v")); }
+  /// "v x y z", "v x y z w", "v x y z r g b" or, rarely, "v x y z r g b a".
+  void read_position() {
+    mesh_.positions.push_back(read_vector("v"));
+    std::array<double, 4> more{};
+    std::size_t count = 0;
+    for (; count < more.size(); ++count) {
+      const std::optional<double> number = parse_number(lines_.word());
+      if (!number) break;
+      more[count] = *number;
+    }
+    const bool colored = count >= 3;
+    if (!colored && mesh_.colors.empty()) return;
+    mesh_.colors.resize(mesh_.positions.size(), no_color);
+    if (colored) mesh_.colors.back() = Vec3f(Vec3d{more[0], more[1], more[2]});
+  }
+
+  /// Colours as programs store them: by the curve of sRGB, in 0 .. 1 or, where any is greater, in 0 .. 255.
+  void finish_colors() {
+    if (mesh_.colors.empty()) return;
+    mesh_.colors.resize(mesh_.positions.size(), no_color);
+    float greatest = 0;
+    for (const Vec3f& color : mesh_.colors) greatest = std::max(greatest, max_component(color));
+    const float unit = greatest > 1 ? 255.f : 1.f;
+    const ToneCurve srgb;
+    for (Vec3f& color : mesh_.colors) {
+      if (color == no_color) color = Vec3f(unit);
+      for (int i = 0; i < 3; ++i) {
+        const float stored = color[i] / unit;
+        color[i] =
+            std::isfinite(stored) ? static_cast<float>(srgb.decode(std::clamp(stored, 0.f, 1.f))) : 0.f;
+      }
+    }
+    mesh_.triangle_colors = mesh_.triangles;
+  }
+  static constexpr Vec3f no_color{-1, -1, -1};  ///< of a vertex without one: white
 
   void read_normal() {
     const Vec3d normal = read_vector("vn");
@@ -75,20 +141,55 @@ class ObjReader {
     mesh_.uvs.push_back({finite ? static_cast<float>(u) : 0.f, finite ? static_cast<float>(v) : 0.f});
   }
 
-  /// "7" is the seventh, "-1" the last so far.
-  std::uint32_t read_index(std::string_view& text, std::size_t count, const char* what) {
+  /// "s 1", "s off", "s 0": of the faces that follow.
+  void read_smoothing() {
+    const std::string_view group = lines_.word();
+    const std::optional<double> number = parse_number(group);
+    constexpr std::uint32_t greatest = std::numeric_limits<std::uint32_t>::max();
+    const bool in_range = number && *number >= 0 && *number <= greatest;
+    store_smoothing();
+    smoothing_ = in_range ? static_cast<std::uint32_t>(*number) : group == "on" ? 1 : 0;
+    if (smoothing_ != 0) obj_.smoothing.resize(mesh_.triangles.size());
+  }
+
+  /// Of the triangles so far; while all are in none, nothing is stored.
+  void store_smoothing() {
+    if (smoothing_ != 0 || !obj_.smoothing.empty()) obj_.smoothing.resize(mesh_.triangles.size(), smoothing_);
+  }
+
+  /// The index at the front of `text`, as it is written; takes it off.
+  long long read_written_index(std::string_view& text, const char* what) {
     long long index = 0;
     const auto [end, error] = std::from_chars(text.begin(), text.end(), index);
     if (error == std::errc::invalid_argument)
       lines_.fail(fmt::format("'{}' is not a {} index", printable(text), what));
+    if (error != std::errc()) index = std::numeric_limits<long long>::max();
+    text.remove_prefix(static_cast<std::size_t>(end - text.begin()));
+    return index;
+  }
+
+  /// "7" is the seventh, "-1" the last so far.
+  std::uint32_t read_index(std::string_view& text, std::size_t count, const char* what) {
+    const std::string_view written = text;
+    const long long index = read_written_index(text, what);
     const auto size = static_cast<long long>(count);
-    if (error != std::errc() || index == 0 || index > size || index < -size)
+    if (index == 0 || index > size || index < -size)
       lines_.fail(fmt::format("{} index {} is out of range: {}", what,
-                              printable(text.substr(0, text.find('/'))),
+                              printable(written.substr(0, written.find('/'))),
                               count == 0 ? std::string("there is none before this line")
                                          : fmt::format("valid are 1 .. {} and -{} .. -1", count, count)));
-    text.remove_prefix(static_cast<std::size_t>(end - text.begin()));
     return static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index);
+  }
+
+  /// The same, or none: where it is 0, or the file has none of the kind.
+  std::uint32_t read_optional_index(std::string_view& text, std::size_t count, const char* what, Oddity zero,
+                                    Oddity none) {
+    std::string_view after = text;
+    const long long index = read_written_index(after, what);
+    if (index != 0 && count != 0) return read_index(text, count, what);
+    text = after;
+    note(index == 0 ? zero : none);
+    return Scene::no_index;
   }
 
   /// "v", "v/vt", "v//vn" or "v/vt/vn".
@@ -99,10 +200,13 @@ class ObjReader {
     if (text.starts_with('/')) {
       text.remove_prefix(1);
       if (!text.empty() && text.front() != '/')
-        corner.uv = read_index(text, mesh_.uvs.size(), "texture coordinate");
+        corner.uv = read_optional_index(text, mesh_.uvs.size(), "texture coordinate", Oddity::uv_index_0,
+                                        Oddity::no_uvs);
       if (text.starts_with('/')) {
         text.remove_prefix(1);
-        if (!text.empty()) corner.normal = read_index(text, mesh_.normals.size(), "normal");
+        if (!text.empty())
+          corner.normal = read_optional_index(text, mesh_.normals.size(), "normal", Oddity::normal_index_0,
+                                              Oddity::no_normals);
       }
     }
     if (!text.empty())
@@ -117,8 +221,7 @@ class ObjReader {
       if (corners_.size() > most_corners)
         lines_.fail(fmt::format("a face of more than {} corners; cut it into smaller ones", most_corners));
     }
-    if (corners_.size() < 3)
-      lines_.fail(fmt::format("a face needs at least 3 corners, but has {}", corners_.size()));
+    if (corners_.size() < 3) return note(Oddity::few_corners);
     cuts_.clear();
     if (corners_.size() == 3) {
       cuts_.push_back({0, 1, 2});
@@ -127,18 +230,35 @@ class ObjReader {
       for (const Corner& corner : corners_) outline_.push_back(mesh_.positions[corner.position]);
       triangulate(outline_, cuts_);
     }
-    for (const Index3& cut : cuts_) add_triangle(corners_[cut[0]], corners_[cut[1]], corners_[cut[2]]);
+    const std::uint16_t material = current_material();
+    for (const Index3& cut : cuts_)
+      add_triangle(corners_[cut[0]], corners_[cut[1]], corners_[cut[2]], material);
   }
 
   bool usable_normal(const Corner& corner) const {
     return corner.normal != Scene::no_index && mesh_.normals[corner.normal] != Vec3f{};
   }
 
-  void add_triangle(const Corner& a, const Corner& b, const Corner& c) {
+  /// Vertex normals say which side is outward, where all three agree against the order of the corners.
+  bool is_wound_against_normals(const Corner& a, const Corner& b, const Corner& c) const {
+    const Vec3d& origin = mesh_.positions[a.position];
+    const Vec3d winding = cross(mesh_.positions[b.position] - origin, mesh_.positions[c.position] - origin);
+    const auto opposes = [&](const Corner& corner) {
+      return dot(Vec3d(mesh_.normals[corner.normal]), winding) < 0;
+    };
+    return opposes(a) && opposes(b) && opposes(c);
+  }
+
+  void add_triangle(const Corner& a, Corner b, Corner c, std::uint16_t material) {
     const std::size_t before = mesh_.triangles.size();
+    const bool has_normals = usable_normal(a) && usable_normal(b) && usable_normal(c);
+    if (has_normals && is_wound_against_normals(a, b, c)) {
+      std::swap(b, c);
+      note(Oddity::wound_against_normals);
+    }
     mesh_.triangles.push_back({a.position, b.position, c.position});
-    mesh_.triangle_material.push_back(material());
-    if (options_.read_normals && usable_normal(a) && usable_normal(b) && usable_normal(c)) {
+    mesh_.triangle_material.push_back(material);
+    if (has_normals) {
       mesh_.triangle_normals.resize(before, no_indices);
       mesh_.triangle_normals.push_back({a.normal, b.normal, c.normal});
     } else if (!mesh_.triangle_normals.empty()) {
@@ -152,61 +272,45 @@ class ObjReader {
     }
   }
 
-  std::uint16_t material() {
-    if (options_.material) return *options_.material;
-    if (!current_material_) current_material_ = builder_.add_material({.name = "default"});
-    return *current_material_;
-  }
-
   void use_material() {
-    if (options_.material) return;
-    const std::string name(lines_.rest());
-    if (name.empty()) lines_.fail("usemtl needs a name");
-    const auto found = materials_.find(name);
-    if (found == materials_.end()) {
-      if (materials_.empty())
-        lines_.fail(
-            fmt::format("material '{}' not found: no mtllib before this line; name one, or give the mesh a "
-                        "\"material\" in a scene file",
-                        printable(name)));
-      std::vector<std::string_view> known;
-      for (const auto& [known_name, index] : materials_) known.push_back(known_name);
-      lines_.fail(fmt::format("material '{}' not found{}", printable(name), suggestion(name, known)));
+    current_ = {{std::string(lines_.rest()), lines_.place()}, true, obj_.libraries.empty()};
+    current_index_.reset();
+  }
+
+  /// The position in `materials` of the one that was named last; it is there once a triangle needs it.
+  std::uint16_t current_material() {
+    if (current_index_) return *current_index_;
+    const auto [found, is_new] =
+        material_indices_.try_emplace(current_.named ? "usemtl " + current_.name : "", obj_.materials.size());
+    if (is_new) {
+      constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
+      if (obj_.materials.size() >= most) lines_.fail(fmt::format("more than {} materials; use fewer", most));
+      obj_.materials.push_back(current_);
     }
-    current_material_ = found->second;
+    current_index_ = static_cast<std::uint16_t>(found->second);
+    return *current_index_;
   }
 
-  void read_library(const std::filesystem::path& library) {
-    for (std::uint16_t index : read_mtl(library, builder_))
-      materials_.emplace(builder_.scene.materials[index].name, index);
+  void read_libraries() {
+    const std::string_view names = lines_.rest();
+    obj_.libraries.push_back({std::string(names), lines_.place()});
   }
 
-  /// "mtllib a.mtl b.mtl" names two files, "mtllib my scene.mtl" one: the longest names that exist are meant.
-  void read_materials() {
-    std::string_view names = lines_.rest();
-    if (options_.material) return;
-    if (names.empty()) lines_.fail("mtllib needs a file name");
-    while (!names.empty()) {
-      std::size_t end = names.size();
-      while (!is_file(resolve_path(names.substr(0, end), file_))) {
-        end = names.find_last_of(" \t", end - 1);
-        if (end == std::string_view::npos || end == 0)
-          lines_.fail(
-              fmt::format("mtllib: no such file: {}", printable(resolve_path(names, file_).string())));
-      }
-      read_library(resolve_path(names.substr(0, end), file_));
-      names.remove_prefix(end);
-      while (!names.empty() && (names.front() == ' ' || names.front() == '\t')) names.remove_prefix(1);
-    }
-  }
+  /// Where an oddity is met first, and how often.
+  struct Met {
+    SourcePlace place;
+    std::uint64_t count = 0;
+  };
 
-  std::filesystem::path file_;
-  ObjOptions options_;
-  SceneBuilder& builder_;
+  WarningList& warnings_;
+  Met odd_[std::size(oddities)];
   LineReader lines_;
-  Mesh mesh_;
-  std::optional<std::uint16_t> current_material_;
-  std::map<std::string, std::uint16_t> materials_;
+  ObjFile obj_;
+  Mesh& mesh_ = obj_.mesh;
+  std::uint32_t smoothing_ = 0;  // the group of the faces at hand
+  ObjFile::UsedMaterial current_{{}, false, false};
+  std::optional<std::uint16_t> current_index_;
+  std::unordered_map<std::string, std::size_t> material_indices_;
   std::vector<Corner> corners_;  // of the face at hand
   std::vector<Vec3d> outline_;
   std::vector<Index3> cuts_;
@@ -214,13 +318,12 @@ class ObjReader {
 
 }  // namespace
 
-Mesh parse_obj(std::string_view text, const std::filesystem::path& file, const ObjOptions& options,
-               SceneBuilder& builder) {
-  return ObjReader(text, file, options, builder).read();
+ObjFile parse_obj(std::string_view text, const std::filesystem::path& file, WarningList& warnings) {
+  return ObjReader(text, file, warnings).read();
 }
 
-Mesh read_obj(const std::filesystem::path& file, const ObjOptions& options, SceneBuilder& builder) {
-  return parse_obj(read_file(file), file, options, builder);
+ObjFile read_obj(const std::filesystem::path& file, WarningList& warnings) {
+  return parse_obj(read_file(file), file, warnings);
 }
 
 }  // namespace castray

@@ -1,24 +1,39 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "scene/mesh.h"
-#include "scene/scene_builder.h"
+#include "scene/warning_list.h"
 
 namespace castray {
 
-struct ObjOptions {
-  std::optional<std::uint16_t> material;  ///< of every triangle; else the file's own, from its MTL files
-  bool read_normals = true;               ///< of "vn"
+/// The end of a line that names something: a material or files.
+struct NamedPlace {
+  std::string name;
+  SourcePlace place;
 };
 
-/// Reads the polygons of an OBJ file, or of the text that is its content, cut into triangles. Its materials
-/// are added to the builder; triangles before any "usemtl" get a grey diffuse one. Throws InputError with
-/// file and line.
-Mesh parse_obj(std::string_view text, const std::filesystem::path& file, const ObjOptions& options,
-               SceneBuilder& builder);
-Mesh read_obj(const std::filesystem::path& file, const ObjOptions& options, SceneBuilder& builder);
+/// What an OBJ file holds: its polygons cut into triangles, and the names of materials and libraries, which
+/// scene/obj_materials.h looks for.
+struct ObjFile {
+  struct UsedMaterial : NamedPlace {
+    bool named = true;      ///< false: of triangles in front of every usemtl
+    bool in_front = false;  ///< of every mtllib
+  };
+
+  std::filesystem::path path;
+  Mesh mesh;  ///< its `triangle_material` is into `materials`
+  std::vector<UsedMaterial> materials;
+  std::vector<NamedPlace> libraries;     ///< the lines "mtllib"
+  std::vector<std::uint32_t> smoothing;  ///< per triangle its smoothing group, 0 for none; or empty
+};
+
+/// Reads an OBJ file, or the text that is its content. Warns of what is missing or odd; throws InputError
+/// with file, line and column of what is broken.
+ObjFile parse_obj(std::string_view text, const std::filesystem::path& file, WarningList& warnings);
+ObjFile read_obj(const std::filesystem::path& file, WarningList& warnings);
 
 }  // namespace castray

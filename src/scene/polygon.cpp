@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <optional>
+#include <utility>
 
 namespace castray {
 
@@ -59,14 +62,25 @@ class CornerGrid {
       : side_(static_cast<int>(std::clamp(std::sqrt(static_cast<double>(count)), 1.0, 1024.0))),
         cells_(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_)) {}
 
-  void add(std::uint32_t corner, const Point2& p) { cell(column(p.x), column(p.y)).push_back(corner); }
+  void add(std::uint32_t corner, const Point2& p) {
+    cell(column(p.x), column(p.y)).push_back(corner);
+    all_.push_back(corner);
+  }
 
-  /// Whether `test` is true for a cell that the box low..high touches.
-  template <class Test>
-  bool any_cell(const Point2& low, const Point2& high, const Test& test) {
-    for (int y = column(low.y); y <= column(high.y); ++y)
-      for (int x = column(low.x); x <= column(high.x); ++x)
-        if (test(cell(x, y))) return true;
+  /// Whether `test` is true for one of the corners in cells that the box low..high touches, and maybe for
+  /// others. Corners that are `gone` are forgotten.
+  template <class Gone, class Test>
+  bool any(const Point2& low, const Point2& high, const Gone& gone, const Test& test) {
+    const int x0 = column(low.x), x1 = column(high.x), y0 = column(low.y), y1 = column(high.y);
+    const auto any_of = [&](std::vector<std::uint32_t>& corners) {
+      std::erase_if(corners, gone);
+      return std::ranges::any_of(corners, test);
+    };
+    if (static_cast<std::size_t>(x1 - x0 + 1) * static_cast<std::size_t>(y1 - y0 + 1) > all_.size())
+      return any_of(all_);
+    for (int y = y0; y <= y1; ++y)
+      for (int x = x0; x <= x1; ++x)
+        if (any_of(cell(x, y))) return true;
     return false;
   }
 
@@ -76,6 +90,7 @@ class CornerGrid {
 
   int side_;
   std::vector<std::vector<std::uint32_t>> cells_;
+  std::vector<std::uint32_t> all_;
 };
 
 /// A polygon being cut: a ring of the corners that are left.
@@ -88,12 +103,13 @@ class Ring {
       last_[next_[i]] = i;
     }
     for (std::uint32_t i = 0; i < size(); ++i)
-      if (!is_convex(i)) reflex_.add(i, points_[i]);
+      if (is_reflex(i)) reflex_.add(i, points_[i]);
   }
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(points_.size()); }
   std::uint32_t next(std::uint32_t i) const { return next_[i]; }
   std::uint32_t last(std::uint32_t i) const { return last_[i]; }
+  bool is_cut(std::uint32_t i) const { return next_[i] == i; }
 
   /// Whether corner i can be cut off: it is convex and no other corner lies in its triangle. Only reflex
   /// corners need a look: a convex one inside brings a reflex one with it.
@@ -107,11 +123,9 @@ class Ring {
     };
     const Point2 low{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})};
     const Point2 high{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
-    return !reflex_.any_cell(low, high, [&](std::vector<std::uint32_t>& cell) {
-      std::erase_if(cell,
-                    [&](std::uint32_t k) { return is_cut(k) || is_convex(k); });  // cutting makes them convex
-      return std::ranges::any_of(cell, blocks);
-    });
+    // Cutting makes reflex corners convex.
+    const auto gone = [&](std::uint32_t k) { return is_cut(k) || !is_reflex(k); };
+    return !reflex_.any(low, high, gone, blocks);
   }
 
   void cut(std::uint32_t i) {
@@ -121,9 +135,16 @@ class Ring {
   }
 
  private:
-  bool is_cut(std::uint32_t i) const { return next_[i] == i; }
-  bool is_convex(std::uint32_t i) const {
-    return twice_area(points_[last_[i]], points_[i], points_[next_[i]]) > 0;
+  double turn(std::uint32_t i) const { return twice_area(points_[last_[i]], points_[i], points_[next_[i]]); }
+  bool is_convex(std::uint32_t i) const { return turn(i) > 0; }
+
+  /// By more than the rounding of coordinates in [-1,1]: corners in a straight line are not, and block no
+  /// ear.
+  bool is_reflex(std::uint32_t i) const {
+    const Point2 &a = points_[last_[i]], &b = points_[i], &c = points_[next_[i]];
+    const double edges =
+        std::abs(b.x - a.x) + std::abs(b.y - a.y) + std::abs(c.x - b.x) + std::abs(c.y - b.y);
+    return turn(i) < -0x1p-51 * edges;
   }
 
   std::vector<Point2> points_;
@@ -131,31 +152,86 @@ class Ring {
   CornerGrid reflex_;
 };
 
+/// The corners that may be ears, in the order in which they are tried: each stands in the queue once, at the
+/// last place it was put.
+class Candidates {
+ public:
+  explicit Candidates(std::uint32_t size) : tickets_(size) {}
+
+  void put(std::uint32_t corner) { queue_.push_back({corner, ++tickets_[corner]}); }
+
+  /// The next one, or nothing.
+  std::optional<std::uint32_t> take() {
+    while (!queue_.empty()) {
+      const auto [corner, ticket] = queue_.front();
+      queue_.pop_front();
+      if (ticket == tickets_[corner]) return corner;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::deque<std::pair<std::uint32_t, std::uint32_t>> queue_;
+  std::vector<std::uint32_t> tickets_;  ///< the last of each
+};
+
+/// Cuts a ring down to a triangle. Only the neighbours of an ear that was cut are tried again, and, a few
+/// times, all that are left: so the work is linear in the corners, but for those that lie in others' way.
+class Cutter {
+ public:
+  Cutter(std::vector<Point2> points, std::vector<Index3>& triangles)
+      : ring_(std::move(points)), candidates_(ring_.size()), triangles_(triangles), left_(ring_.size()) {}
+
+  void run() {
+    constexpr int most_rounds = 16;
+    std::uint32_t before = left_ + 1;
+    for (int round = 0; round < most_rounds && left_ > 3 && left_ < before; ++round) {
+      before = left_;
+      put_all();
+      while (left_ > 3) {
+        const std::optional<std::uint32_t> corner = candidates_.take();
+        if (!corner) break;
+        if (!ring_.is_cut(*corner) && ring_.is_ear(*corner)) cut(*corner);
+      }
+    }
+    // What no ear is left of is not simple: cut anywhere.
+    while (left_ > 3) cut(at_);
+    triangles_.push_back({ring_.next(at_), ring_.last(at_), at_});
+  }
+
+ private:
+  /// From the corner at hand on; of a convex quad first 1: (0,1,2) and (0,2,3).
+  void put_all() {
+    std::uint32_t corner = at_;
+    for (std::uint32_t i = 0; i < left_; ++i, corner = ring_.next(corner)) candidates_.put(corner);
+  }
+
+  void cut(std::uint32_t corner) {
+    const std::uint32_t before = ring_.last(corner), after = ring_.next(corner);
+    triangles_.push_back({before, corner, after});
+    ring_.cut(corner);
+    --left_;
+    candidates_.put(after);  // behind all others: fans have thinner triangles
+    candidates_.put(before);
+    at_ = ring_.next(after);
+  }
+
+  Ring ring_;
+  Candidates candidates_;
+  std::vector<Index3>& triangles_;
+  std::uint32_t left_;
+  std::uint32_t at_ = 1;
+};
+
 }  // namespace
 
-void triangulate(const std::vector<Vec3d>& corners, std::vector<std::array<std::uint32_t, 3>>& triangles) {
+void triangulate(const std::vector<Vec3d>& corners, std::vector<Index3>& triangles) {
   const std::vector<Vec3d> scaled = normalized(corners);
   if (scaled.empty()) {
     for (std::uint32_t i = 2; i < corners.size(); ++i) triangles.push_back({0, i - 1, i});
     return;
   }
-  Ring ring(project(scaled));
-  std::uint32_t i = 1, tried = 0;  // of a convex quad: (0,1,2) and (0,2,3)
-  for (std::uint32_t left = ring.size(); left > 3;) {
-    // Where no corner is an ear the polygon is not simple: cut anywhere.
-    if (ring.is_ear(i) || tried > left) {
-      const std::uint32_t after = ring.next(i);
-      triangles.push_back({ring.last(i), i, after});
-      ring.cut(i);
-      --left;
-      tried = 0;
-      i = ring.next(after);  // not the neighbour: fans have thinner triangles
-    } else {
-      i = ring.next(i);
-      ++tried;
-    }
-  }
-  triangles.push_back({ring.next(i), ring.last(i), i});
+  Cutter(project(scaled), triangles).run();
 }
 
 }  // namespace castray

@@ -182,11 +182,11 @@ void SceneBuilder::warn_of_rounding() {
     moved += share > tolerated;
   }
   if (moved == 0) return;
-  scene.warnings.push_back(
-      fmt::format("{} of {} triangles are so small beside the whole scene that rounding moves their corners, "
-                  "by up to {:.2g} % of their "
-                  "longest edge; bring far parts nearer or leave them out",
-                  moved, mesh_.triangles.size(), 100 * most));
+  warnings.add({scene.file.string()},
+               fmt::format("{} of {} triangles are so small beside the whole scene that rounding moves their "
+                           "corners, by up to {:.2g} % of their "
+                           "longest edge; bring far parts nearer or leave them out",
+                           moved, mesh_.triangles.size(), 100 * most));
 }
 
 void SceneBuilder::drop_flat() {
@@ -215,8 +215,11 @@ Scene SceneBuilder::finish() {
   scene.triangle_uvs = std::move(mesh_.triangle_uvs);
   scene.colors = std::move(mesh_.colors);
   scene.triangle_colors = std::move(mesh_.triangle_colors);
+  scene.warnings = warnings.take();
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
+  scene.default_environment = scene.lights.empty() && !environment_given;
+  if (scene.default_environment) scene.environment = Vec3d(1);
   return std::move(scene);
 }
 

@@ -7,14 +7,19 @@
 #include <vector>
 
 #include "castray/scene.h"
+#include "scene/file_finder.h"
 #include "scene/mesh.h"
+#include "scene/warning_list.h"
 
 namespace castray {
 
 /// Gathers a scene's meshes in double, and moves them into scene space at the end.
 class SceneBuilder {
  public:
-  Scene scene;  ///< all but what `finish` fills in: geometry, lights, the camera's place
+  Scene scene;  ///< all but what `finish` fills in: geometry, lights, warnings, the camera's place
+  bool environment_given = false;  ///< else, where nothing emits, the scene gets a white one
+  WarningList warnings;
+  FileFinder files;
 
   /// Adds a material and returns its index. Throws InputError where there are too many to be numbered.
   std::uint16_t add_material(Material material);
@@ -27,8 +32,8 @@ class SceneBuilder {
 
   void add(Mesh&& mesh);
 
-  /// Drops degenerate triangles and fills in geometry, center, unit and lights. Throws InputError where no
-  /// triangle is left.
+  /// Drops degenerate triangles and fills in geometry, center, unit, lights and warnings. Throws InputError
+  /// where no triangle is left.
   Scene finish();
 
  private:

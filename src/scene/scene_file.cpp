@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/files.h"
 #include "core/nearest.h"
@@ -11,7 +13,7 @@
 #include "materials/descriptor.h"
 #include "scene/json_reader.h"
 #include "scene/material_reader.h"
-#include "scene/obj_file.h"
+#include "scene/obj_mesh.h"
 #include "scene/scene_builder.h"
 #include "scene/transform.h"
 
@@ -59,8 +61,9 @@ class SceneFileReader {
     if (const JsonNode* node = scene.find("materials")) read_materials(*node);
     const JsonNode* camera = scene.find("camera");
     if (camera) read_camera(*camera);
-    for (const JsonNode& mesh : read_array(scene.require("meshes"), "\"meshes\"")) read_mesh(mesh);
+    read_meshes(read_array(scene.require("meshes"), "\"meshes\""));
     Scene result = builder_.finish();
+    result.has_camera = camera;
     if (camera)
       result.camera.position = result.to_scene(result.camera.position);
     else
@@ -107,6 +110,7 @@ class SceneFileReader {
 
   void read_environment(const JsonNode& node) {
     const ObjectReader environment(node, "\"environment\"", keys_of("environment"));
+    builder_.environment_given = true;
     builder_.scene.environment = read_vector(environment.require("radiance"), "\"radiance\"", not_negative);
   }
 
@@ -148,32 +152,75 @@ class SceneFileReader {
                                                            : suggestion(node.text, known)));
   }
 
-  void read_mesh(const JsonNode& node) {
-    const ObjectReader reader(node, "a mesh", keys_of("mesh"));
-    ObjOptions options;
+  MeshOptions read_mesh_options(const ObjectReader& reader) {
+    MeshOptions options;
     if (const JsonNode* material = reader.find("material")) options.material = find_material(*material);
     if (const JsonNode* normals = reader.find("normals"))
-      options.read_normals = choose(*normals, "\"normals\"", {"file", "face"}) == 0;
+      options.normals = static_cast<NormalsFrom>(choose(*normals, "\"normals\"", {"file", "face", "smooth"}));
+    if (const JsonNode* crease = reader.find("crease_angle")) {
+      options.crease_angle = read_number(*crease, "\"crease_angle\"", {.least = 0, .greatest = 180});
+      if (options.normals != NormalsFrom::smooth)
+        throw InputError(crease->key_place, "\"crease_angle\" goes with \"normals\": \"smooth\" only");
+    }
+    return options;
+  }
+
+  std::filesystem::path obj_path(const ObjectReader& mesh) const {
+    const JsonNode& obj = mesh.require("obj");
+    std::filesystem::path path = file_.parent_path() / read_string(obj, "\"obj\"");
+    if (is_file(path)) return path;
+    std::error_code ignored;
+    throw InputError(
+        obj.place,
+        fmt::format("{}: {}",
+                    std::filesystem::is_directory(path, ignored) ? "a folder, not a file" : "no such file",
+                    printable(path.string())));
+  }
+
+  void read_meshes(const std::vector<JsonNode>& nodes) {
+    // A file is read once, and kept until its last use.
+    std::map<std::filesystem::path, ObjUse> objs;
+    std::vector<ObjUse*> uses;
+    for (const JsonNode& node : nodes) {
+      const ObjectReader mesh(node, "a mesh", keys_of("mesh"));
+      const std::filesystem::path path = obj_path(mesh);
+      uses.push_back(&objs.try_emplace(path).first->second);
+      uses.back()->path = path;
+      ++uses.back()->left;
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) read_mesh(nodes[i], *uses[i]);
+  }
+
+  struct ObjUse {
+    std::filesystem::path path;
+    int left = 0;
+    std::optional<ObjFile> file{};
+
+    ObjFile take() {
+      if (--left > 0) return *file;
+      ObjFile last = std::move(*file);
+      file.reset();
+      return last;
+    }
+  };
+
+  void read_mesh(const JsonNode& node, ObjUse& obj) {
+    const ObjectReader reader(node, "a mesh", keys_of("mesh"));
+    const MeshOptions options = read_mesh_options(reader);
     Transform transform;
     if (const JsonNode* steps = reader.find("transform"))
       for (const JsonNode& step : read_array(*steps, "\"transform\""))
         transform = transform.then(read_step(step));
-    const JsonNode& obj = reader.require("obj");
-    const std::filesystem::path path = file_.parent_path() / read_string(obj, "\"obj\"");
-    std::error_code ignored;
-    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-    if (!std::filesystem::exists(status) || std::filesystem::is_directory(status))
-      throw InputError(
-          obj.place,
-          fmt::format("{}: {}", std::filesystem::exists(status) ? "a folder, not a file" : "no such file",
-                      printable(path.string())));
-    Mesh mesh = read_obj(path, options, builder_);
+    if (!obj.file) obj.file = read_obj(obj.path, builder_.warnings);
+    Mesh mesh = make_mesh(obj.take(), options, materials_);
     if (reader.find("transform")) apply(transform, mesh);
+    if (mesh.triangles.empty()) builder_.warnings.add({obj.path.string()}, "has no faces");
     builder_.add(std::move(mesh));
   }
 
   std::filesystem::path file_;
   SceneBuilder builder_;
+  ObjMaterials materials_{builder_};
   std::map<std::string, std::uint16_t> material_indices_;
 };
 
@@ -187,7 +234,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"image", {"width", "height"}},
         {"environment", {"radiance"}},
         {"map", map_keys()},
-        {"mesh", {"obj", "material", "transform", "normals"}},
+        {"mesh", {"obj", "material", "transform", "normals", "crease_angle"}},
         {"transform_step", {"scale", "rotate", "translate"}},
     };
     for (const MaterialDescriptor* material : material_descriptors()) {

@@ -17,27 +17,52 @@ constexpr Option options[] = {{"-s", 0, 3},      {"-o", 0, 3},         {"-t", 0,
                               {"-blendv", 1, 0}, {"-clamp", 1, 0},     {"-cc", 1, 0},     {"-imfchan", 1, 0},
                               {"-type", 1, 0},   {"-colorspace", 1, 0}};
 
+/// Takes over an option with its word, or the first `count` of its numbers. False: it means nothing here.
+bool take(TextureStatement& statement, std::string_view option, std::string_view word,
+          const std::array<double, 3>& numbers, int count) {
+  if (option == "-s" || option == "-o") {
+    std::array<double, 2>& values = option == "-s" ? statement.scale : statement.offset;
+    std::copy_n(numbers.begin(), std::min(count, 2), values.begin());
+  } else if (option == "-clamp") {
+    statement.clamp = word == "on";
+  } else if (option == "-mm") {
+    if (count > 0) statement.base = numbers[0];
+    if (count > 1) statement.gain = numbers[1];
+  } else if (option == "-bm") {
+    if (count > 0) statement.bump = numbers[0];
+  } else if (option == "-imfchan") {
+    statement.channel = word.empty() ? '\0' : word.front();
+  } else if (option == "-colorspace") {
+    statement.color_space = word;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-TextureStatement read_texture_statement(LineReader& line) {
+TextureStatement read_texture_statement(const std::string& key, LineReader& line) {
   TextureStatement statement;
+  statement.key = key;
+  statement.place = line.place();
   for (;;) {
     const auto option = std::ranges::find(options, line.peek(), &Option::name);
     if (option == std::end(options)) break;
     line.word();
-    for (int i = 0; i < option->words; ++i) line.word();
-    for (int i = 0; i < option->numbers; ++i) {
+    const std::string_view word = option->words > 0 ? line.word() : std::string_view();
+    std::array<double, 3> numbers{};
+    int count = 0;
+    for (; count < option->numbers; ++count) {
       const std::optional<double> value = parse_number(line.peek());
       if (!value) break;
       line.word();
-      const auto axis = static_cast<std::size_t>(i);
-      if (option->name == "-s" && axis < 2) statement.map.scale[axis] = static_cast<float>(*value);
-      if (option->name == "-o" && axis < 2) statement.map.offset[axis] = static_cast<float>(*value);
+      numbers[static_cast<std::size_t>(count)] = *value;
     }
-    if (option->name != "-s" && option->name != "-o") statement.ignored_options.emplace_back(option->name);
+    if (!take(statement, option->name, word, numbers, count))
+      statement.ignored_options.emplace_back(option->name);
   }
   statement.file = line.rest();
-  if (statement.file.empty()) line.fail("a texture needs a file name");
   return statement;
 }
 

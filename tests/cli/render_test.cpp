@@ -262,10 +262,9 @@ TEST_CASE("an .obj is seen by an automatic view or by camera flags") {
                        "-o", "a.pfm"},
                       folder.path())
               .exit_code == 0);
-  REQUIRE(run_castray(
-              {"render", obj, "--size", "16x16", "--spp", "4", "--integrator", "reference", "-q",
-               "--camera-position", "278,273,-800", "--look-at", "278,273,0", "--fov", "40", "-o", "b.pfm"},
-              folder.path())
+  REQUIRE(run_castray({"render", obj, "--size", "16x16", "--spp", "4", "--integrator", "reference", "-q",
+                       "--look-from", "278,273,-800", "--look-at", "278,273,0", "--fov", "40", "-o", "b.pfm"},
+                      folder.path())
               .exit_code == 0);
   REQUIRE(run_castray({"render", cornell, "--size", "16x16", "--spp", "4", "--integrator", "reference", "-q",
                        "-o", "c.pfm"},

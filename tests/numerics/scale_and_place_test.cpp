@@ -118,8 +118,8 @@ TEST_CASE("far parts that spoil the precision of near ones are told, with the lo
   };
   CHECK(warnings("1e3").empty());
   // A unit triangle 1.5e6 from its scene's middle has coordinates in steps of 2^-3 at 2^20 .. 2^21.
-  const std::vector<std::string> told = warnings("3000000.3");
+  const std::vector<SceneWarning> told = warnings("3000000.3");
   REQUIRE(told.size() == 1);
-  CHECK(told[0].starts_with(
+  CHECK(told[0].message.starts_with(
       "1 of 2 triangles are so small beside the whole scene that rounding moves their corners"));
 }

@@ -111,12 +111,21 @@ TEST_CASE("a scene file says what is in the scene") {
   CHECK(scene.render_defaults[1].place.column == 28);
 }
 
-TEST_CASE("a scene without light says so") {
-  const Scene scene = load_text(R"({ "meshes": [ { "obj": "t.obj" } ] })");
-  CHECK(scene.warnings ==
-        std::vector<std::string>{"nothing in the scene emits light: the image will be black"});
-  CHECK(load_text(R"({ "meshes": [ { "obj": "t.obj" } ], "environment": { "radiance": [1, 0, 0] } })")
-            .warnings.empty());
+TEST_CASE("a scene in which nothing emits has a white sky, unless its file says what is around it") {
+  const Scene bare = load_text(R"({ "meshes": [ { "obj": "t.obj" } ] })");
+  CHECK(bare.default_environment);
+  CHECK(bare.environment == Vec3d{1, 1, 1});
+  CHECK(bare.warnings.empty());
+  const Scene red =
+      load_text(R"({ "meshes": [ { "obj": "t.obj" } ], "environment": { "radiance": [1, 0, 0] } })");
+  CHECK(!red.default_environment);
+  CHECK(red.environment == Vec3d{1, 0, 0});
+  CHECK(load_text(R"({ "meshes": [ { "obj": "t.obj" } ], "environment": { "radiance": [0, 0, 0] } })")
+            .environment == Vec3d{0, 0, 0});
+  const Scene lit = load_text(R"({ "materials": { "a": { "type": "diffuse", "ke": [1, 1, 1] } },
+                                   "meshes": [ { "obj": "t.obj", "material": "a" } ] })");
+  CHECK(!lit.default_environment);
+  CHECK(lit.environment == Vec3d{0, 0, 0});
 }
 
 TEST_CASE("a camera is right-handed and orthonormal") {

@@ -1,0 +1,63 @@
+#include "cli/scene_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace castray::cli {
+
+namespace {
+
+/// `x` with at most `decimals` of them.
+std::string number(double x, int decimals) {
+  std::string text = fmt::format("{:.{}f}", x, decimals);
+  if (text.find('.') == text.npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+std::string numbers(const Vec3d& v, int decimals, const char* separator) {
+  return number(v.x, decimals) + separator + number(v.y, decimals) + separator + number(v.z, decimals);
+}
+
+struct View {
+  std::string position, look_at, up, fov;
+};
+
+View view_of(const Scene& scene, const char* separator) {
+  constexpr int decimals = 6;
+  const Camera& c = scene.camera;
+  // What is looked at lies as far away as the scene's middle, or nearly.
+  const double distance = std::max(0.1, dot(-c.position, c.forward));
+  return {world_point(scene, c.position, separator),
+          world_point(scene, c.position + c.forward * distance, separator),
+          numbers(c.up, decimals, separator),
+          number(std::atan(c.tan_half_fov) * 360 / std::numbers::pi, decimals)};
+}
+
+}  // namespace
+
+bool is_dark(const Scene& scene) { return scene.lights.empty() && max_component(scene.environment) == 0; }
+
+std::string world_point(const Scene& scene, const Vec3d& in_scene_space, const char* separator) {
+  constexpr double told_apart = 0x1p-20;  // of `unit`: some floats' distance
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(scene.unit * told_apart))), 0, 300);
+  return numbers(scene.to_world(in_scene_space), decimals, separator);
+}
+
+std::string view_flags(const Scene& scene) {
+  const View view = view_of(scene, ",");
+  return fmt::format("--look-from {} --look-at {} --up {} --fov {}", view.position, view.look_at, view.up,
+                     view.fov);
+}
+
+std::string view_json(const Scene& scene) {
+  const View view = view_of(scene, ", ");
+  return fmt::format(R"("camera": {{ "position": [{}], "look_at": [{}], "up": [{}], "fov": {} }})",
+                     view.position, view.look_at, view.up, view.fov);
+}
+
+}  // namespace castray::cli

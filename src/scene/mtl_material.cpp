@@ -1,0 +1,223 @@
+#include "scene/mtl_material.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/mtl_texture.h"
+
+namespace castray {
+
+namespace {
+
+using enum SurfaceParameter;
+
+/// A file's material as one of the renderer's.
+class Meaning {
+ public:
+  Meaning(const MtlFile& file, const MtlMaterial& mtl, bool vertex_colors, SceneBuilder& builder)
+      : mtl_(mtl),
+        builder_(builder),
+        dissolve_(dissolve()),
+        blender_(file.from_blender || only_blender_writes()) {
+    material_.name = mtl.name;
+    read_base_color(vertex_colors);
+    read_emission();
+    read_coverage();
+    read_normals();
+    read_reflection();
+  }
+
+  std::uint16_t add() { return builder_.add_material(std::move(material_)); }
+
+ private:
+  bool illum_is(std::initializer_list<int> models) const {
+    return mtl_.illum && std::ranges::find(models, *mtl_.illum) != models.end();
+  }
+
+  double dissolve() const {
+    if (mtl_.dissolve) return *mtl_.dissolve;
+    return mtl_.transparency ? 1 - *mtl_.transparency : 1;
+  }
+
+  bool is_partial() const { return (dissolve_ > 0 && dissolve_ < 1) || mtl_.map(MtlMap::dissolve); }
+
+  /// illum 9, "glass", of what is half there.
+  bool only_blender_writes() const { return illum_is({9}) && is_partial() && mtl_.ks && mtl_.ns; }
+
+  bool is_glass() const {
+    if (metal() > 0) return false;
+    constexpr double mostly = 0.5;
+    if (blender_ && mtl_.tf && max_component(*mtl_.tf) >= mostly) return true;
+    return illum_is({4, 6, 7, 9}) && mtl_.ni && *mtl_.ni > 1 && !is_partial();
+  }
+
+  bool is_mapped(MtlMap map) const { return mtl_.map(map).has_value(); }
+
+  /// Adds a map's image; false where there is none.
+  bool set_map(SurfaceParameter parameter, MtlMap map, ColorSpace space) {
+    if (!is_mapped(map)) return false;
+    TextureMap& to = material_.map(parameter);
+    to = read_map(*mtl_.map(map), space, builder_);
+    if (!to.used()) to = {};
+    return to.used();
+  }
+
+  /// A map alone, or beside black, which would hide it, is not scaled.
+  static Vec3d color(const std::optional<Vec3d>& given, bool mapped, const Vec3d& otherwise) {
+    if (mapped && (!given || max_component(*given) == 0)) return Vec3d(1.0);
+    return given.value_or(otherwise);
+  }
+
+  void read_base_color(bool vertex_colors) {
+    const bool mapped = set_map(kd, MtlMap::kd, ColorSpace::srgb);
+    // What Blender writes beside map_Kd is the colour that the image stands in place of.
+    material_.kd = mapped && blender_ ? Vec3d(1.0) : color(mtl_.kd, mapped, Vec3d(0.5));
+    if (!vertex_colors || mtl_.kd || mapped) return;
+    material_.kd = Vec3d(1.0);
+    material_.vertex_colors = true;
+  }
+
+  void read_emission() {
+    const bool mapped = set_map(ke, MtlMap::ke, ColorSpace::srgb);
+    material_.ke = color(mtl_.ke, mapped, Vec3d(0.0));
+  }
+
+  void read_coverage() {
+    if (is_glass()) return;
+    material_.coverage = dissolve_;
+    TextureMap& map = material_.map(coverage);
+    if (set_map(coverage, MtlMap::dissolve, ColorSpace::linear)) {
+      if (material_.coverage == 0) material_.coverage = 1;
+      if (map.channel == Channel::color)
+        map.channel = has_holes(texture_of(map)) ? Channel::alpha : Channel::luminance;
+    } else if (material_.map(kd).used() && has_holes(texture_of(material_.map(kd)))) {
+      map = material_.map(kd);
+      map.channel = Channel::alpha;
+    }
+  }
+
+  void read_normals() {
+    if (set_map(normal, MtlMap::normal, ColorSpace::linear)) {
+      material_.map(normal).gain = static_cast<float>(mtl_.map(MtlMap::normal)->bump);
+    } else if (set_map(bump, MtlMap::bump, ColorSpace::linear)) {
+      TextureMap& map = material_.map(bump);
+      const auto strength = static_cast<float>(mtl_.map(MtlMap::bump)->bump);
+      if (holds_normals(texture_of(map))) {
+        material_.map(normal) = map;
+        material_.map(normal).gain = strength;
+        map = {};
+      } else {
+        map.gain *= strength;
+      }
+    }
+  }
+
+  const Texture& texture_of(const TextureMap& map) const {
+    return builder_.scene.textures[static_cast<std::size_t>(map.texture)];
+  }
+
+  double metal() const { return mtl_.metallic.value_or(is_mapped(MtlMap::metallic) ? 1 : 0); }
+
+  void read_roughness() {
+    if (set_map(roughness, MtlMap::roughness, ColorSpace::linear)) {
+      const double factor = blender_ ? 1 : mtl_.roughness.value_or(1);
+      material_.alpha = factor > 0 ? factor * factor : 1;
+    } else {
+      material_.alpha = constant_alpha();
+    }
+  }
+
+  double constant_alpha() const {
+    if (mtl_.roughness) return *mtl_.roughness * *mtl_.roughness;
+    if (!mtl_.ns) return illum_is({3, 5}) ? 0 : 1;
+    // Blender: Ns = 1000 (1 - roughness)^2.
+    if (blender_) return std::pow(1 - std::sqrt(std::min(1.0, *mtl_.ns / 1000)), 2);
+    if (illum_is({3, 5}) && *mtl_.ns >= 1000) return 0;
+    return std::min(1.0, std::sqrt(2 / (*mtl_.ns + 2)));
+  }
+
+  /// Whether the material is told by metalness, as Blender and others do in MTL's extension for PBR.
+  bool is_principled() const { return blender_ || mtl_.metallic || is_mapped(MtlMap::metallic); }
+
+  /// What the layer over the base reflects straight on.
+  Vec3d specular(bool mapped) const {
+    constexpr double blender_scale = 0.08, usual_dielectric = 0.04;
+    if (is_principled())
+      return mtl_.ks || mapped ? color(mtl_.ks, mapped, {}) * blender_scale : Vec3d(usual_dielectric);
+    if (illum_is({3, 5})) return color(mtl_.ks, mapped, Vec3d(0.8));
+    const bool has_highlight =
+        !illum_is({0, 1}) && (mtl_.ns || mtl_.roughness || is_mapped(MtlMap::roughness));
+    return has_highlight ? color(mtl_.ks, mapped, Vec3d(0.0)) : Vec3d(0.0);
+  }
+
+  void read_reflection() {
+    read_roughness();
+    if (is_glass()) return read_glass();
+    const Vec3d layer = specular(set_map(ks, MtlMap::ks, ColorSpace::srgb));
+    const bool has_base = mtl_.kd || is_mapped(MtlMap::kd) || material_.vertex_colors;
+    const bool mirror_only =
+        illum_is({3, 5}) && !is_principled() && !(has_base && max_component(material_.kd) > 0);
+    if (mirror_only && max_component(layer) > 0) {
+      set_conductor(layer, ks);
+    } else if (metal() == 1 && !is_mapped(MtlMap::metallic)) {
+      set_conductor(material_.kd, kd);
+    } else if (max_component(layer) > 0 || metal() > 0) {
+      material_.type = MaterialType::microfacet;
+      material_.ks = layer;
+      read_metal();
+    } else {
+      material_.map(ks) = {};
+    }
+    if (is_mapped(MtlMap::ns)) not_done(*mtl_.map(MtlMap::ns));
+  }
+
+  void set_conductor(const Vec3d& color, SurfaceParameter source) {
+    material_.type = MaterialType::conductor;
+    material_.reflectance = color;
+    material_.map(reflectance) = material_.map(source);
+  }
+
+  /// A constant blend of constant colours needs no metalness any more.
+  void read_metal() {
+    const bool mapped = set_map(metallic, MtlMap::metallic, ColorSpace::linear);
+    material_.metallic = metal();
+    if (mapped && material_.metallic == 0) material_.metallic = 1;
+    if (mapped || material_.map(kd).used() || material_.map(ks).used() || material_.vertex_colors) return;
+    material_.ks = material_.ks * (1 - material_.metallic) + material_.kd * material_.metallic;
+    material_.kd = material_.kd * (1 - material_.metallic);
+    material_.metallic = 0;
+  }
+
+  void read_glass() {
+    material_.type = MaterialType::dielectric;
+    material_.ior = mtl_.ni && *mtl_.ni > 1 ? *mtl_.ni : 1.5;
+    // Ns of glass is the width of a highlight drawn on it, not of its surface.
+    if (!blender_ && !mtl_.roughness && !is_mapped(MtlMap::roughness)) material_.alpha = 0;
+    if (blender_ && mtl_.tf)
+      material_.transmittance = material_.kd;
+    else
+      material_.transmittance = mtl_.tf && max_component(*mtl_.tf) > 0 ? *mtl_.tf : Vec3d(1.0);
+    if (blender_ && mtl_.tf) material_.map(transmittance) = material_.map(kd);
+  }
+
+  void not_done(const TextureStatement& statement) {
+    builder_.warnings.add(statement.place, statement.key + " is not done");
+  }
+
+  const MtlMaterial& mtl_;
+  SceneBuilder& builder_;
+  double dissolve_;
+  bool blender_;
+  Material material_{};
+};
+
+}  // namespace
+
+std::uint16_t add_material(const MtlFile& file, const MtlMaterial& mtl, bool vertex_colors,
+                           SceneBuilder& builder) {
+  return Meaning(file, mtl, vertex_colors, builder).add();
+}
+
+}  // namespace castray

@@ -1,0 +1,160 @@
+// What a person sees who renders a mesh of another program without more ado.
+#include <catch2/catch.hpp>
+
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "castray/image.h"
+#include "castray/scene.h"
+#include "run_castray.h"
+
+using namespace castray;
+using Catch::Contains;
+
+namespace {
+
+const std::string square = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n";
+
+/// A floor and a lamp above it whose corners run counter-clockwise seen from above; `lamp` are its corners.
+std::string lamp_room(const std::string& lamp) {
+  return "mtllib m.mtl\nv -2 0 -2\nv 2 0 -2\nv 2 0 2\nv -2 0 2\nv -.5 1.5 -.5\nv .5 1.5 -.5\nv .5 1.5 .5\nv "
+         "-.5 1.5 .5\n"
+         "vn 0 -1 0\nusemtl floor\nf 4 3 2 1\nusemtl lamp\nf " +
+         lamp + "\n";
+}
+const std::string lamp_materials = "newmtl floor\nKd .8 .8 .8\nnewmtl lamp\nKd 0 0 0\nKe 5 5 5\n";
+
+/// A folder with o.obj and m.mtl, in which castray renders.
+struct Mesh {
+  TemporaryFolder folder;
+
+  explicit Mesh(const std::string& obj, const std::string& mtl = "") {
+    std::ofstream(folder / "o.obj") << obj;
+    std::ofstream(folder / "m.mtl") << mtl;
+  }
+  RunResult render(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"render", "o.obj",        "--size",    "32x32", "--spp",
+                                       "16",     "--integrator", "reference", "-o",    "o.pfm"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_castray(arguments, folder.path());
+  }
+  Image image() const { return read_image(folder / "o.pfm").image; }
+  Vec3f middle() const { return image().pixels[16 * 32 + 16]; }
+};
+
+/// What follows `key` on its line of `castray info`.
+std::string told(const std::string& info, const std::string& key) {
+  const std::size_t at = info.find(key), begin = at + key.size();
+  return at == info.npos ? "" : info.substr(begin, info.find('\n', begin) - begin);
+}
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+float brightest(const Image& image) {
+  float most = 0;
+  for (const Vec3f& pixel : image.pixels) most = std::max(most, max_component(pixel));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("a mesh without lights is lit by a white sky, or by the environment of the flag") {
+  const Mesh mesh(square + "f 1 2 3 4\n");
+  const RunResult outcome = mesh.render({});
+  CHECK_THAT(outcome.err, Contains("nothing in o.obj emits light, so a white sky does"));
+  CHECK(mesh.middle().x == Approx(0.5).epsilon(0.01));
+  CHECK(mesh.image().pixels[0] == Vec3f{1, 1, 1});
+  mesh.render({"--environment", "1,0.5,0"});
+  CHECK(mesh.middle().x == Approx(0.5).epsilon(0.01));
+  CHECK(mesh.middle().y == Approx(0.25).epsilon(0.01));
+  CHECK(mesh.middle().z == 0);
+  const RunResult dark = mesh.render({"--environment", "off"});
+  CHECK_THAT(dark.err, Contains("nothing in the scene emits light: the image will be black"));
+  CHECK(brightest(mesh.image()) == 0);
+}
+
+TEST_CASE("a room without its front is looked into, from wherever the front was") {
+  // Walls of a cube face inwards; the one that is left out is open.
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+  const std::pair<std::string, Vec3d> walls[] = {{"f 1 2 3 4\n", {0, 0, -1}},
+                                                 {"f 8 7 6 5\n", {0, 0, 1}},
+                                                 {"f 5 1 4 8\n", {-1, 0, 0}},
+                                                 {"f 2 6 7 3\n", {1, 0, 0}},
+                                                 {"f 4 3 7 8\n", {0, 1, 0}}};
+  for (const auto& [open, towards_viewer] : walls) {
+    std::string room = corners + "f 1 5 6 2\n";
+    for (const auto& wall : walls)
+      if (wall.first != open) room += wall.first;
+    const TemporaryFolder folder;
+    std::ofstream(folder / "o.obj") << room;
+    const Scene scene = load_scene(folder / "o.obj");
+    CHECK(dot(scene.camera.forward, -towards_viewer) > 0.99);
+  }
+}
+
+TEST_CASE("the view that info prints, as flags or as JSON, is the automatic one") {
+  // Far from the origin, as maps are.
+  const Mesh mesh(
+      "v 500123.25 120.5 5412345.75\nv 500128.81 120.5 5412351.342\nv 500123.25 125.988 5412345.75\nf 1 2 "
+      "3\nf 3 2 1\n");
+  REQUIRE(mesh.render({}).exit_code == 0);
+  const Image automatic = mesh.image();
+  const std::string info = run_castray({"info", "o.obj"}, mesh.folder.path()).out;
+  CHECK(told(info, "bounds     ") == "(500123.25, 120.5, 5412345.75) .. (500128.81, 125.988, 5412351.342)");
+  const auto same = [&](const Image& image) {
+    double difference = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      difference += std::abs(double(image.pixels[i].x - automatic.pixels[i].x));
+    return difference < 0.01 * double(image.pixels.size());
+  };
+  REQUIRE(mesh.render(words(told(info, "view       "))).exit_code == 0);
+  CHECK(same(mesh.image()));
+  std::ofstream(mesh.folder / "s.json")
+      << "{ " << told(info, "--fov 40\n           ") << R"(, "meshes": [ { "obj": "o.obj" } ] })";
+  REQUIRE(run_castray({"render", "s.json", "--size", "32x32", "--spp", "16", "--integrator", "reference",
+                       "-o", "o.pfm"},
+                      mesh.folder.path())
+              .exit_code == 0);
+  CHECK(same(mesh.image()));
+}
+
+TEST_CASE("a black image comes with its reason") {
+  const std::vector<std::string> view{"--look-from", "0,1,6", "--look-at", "0,0.6,0"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), view.begin(), view.end());
+    return more;
+  };
+  const Mesh away(lamp_room("8 7 6 5"), lamp_materials);
+  const RunResult outcome = away.render(view);
+  CHECK(outcome.exit_code == 0);
+  CHECK(brightest(away.image()) == 0);
+  CHECK_THAT(outcome.err, Contains("the image is black: its lights face away from all that is seen"));
+  CHECK(away.render(with({"--two-sided-lights"})).err.find("black") == std::string::npos);
+  CHECK(brightest(away.image()) > 0.1f);
+  // Their vertex normals say where lamps shine.
+  const Mesh turned(lamp_room("8//1 7//1 6//1 5//1"), lamp_materials);
+  CHECK(turned.render(view).err.find("black") == std::string::npos);
+  CHECK(brightest(turned.image()) > 0.1f);
+  CHECK_THAT(turned.render({"--look-from", "0,1,6", "--look-at", "0,1,9"}).err,
+             Contains("the image is black: the camera sees nothing of the scene"));
+  CHECK_THAT(turned.render(with({"--max-depth", "1", "--crop", "0,31,32,32"})).err,
+             Contains("--max-depth 1"));
+}
+
+TEST_CASE("--strict makes the first warning the error; without it render tells what changes the picture") {
+  const Mesh mesh("mtllib lost.mtl\nusemtl m\n" + square + "f 1 2\nf 1 2 3 4\n");
+  const RunResult strict = mesh.render({"--strict"});
+  CHECK(strict.exit_code == 2);
+  CHECK(strict.err == "castray: error: o.obj:7: a face of fewer than 3 corners is left out\n");
+  const RunResult lenient = mesh.render({});
+  CHECK(lenient.exit_code == 0);
+  CHECK_THAT(lenient.err,
+             Contains("castray: warning: o.obj:1: mtllib: no such file: lost.mtl\n") &&
+                 Contains("castray: warning: o.obj:7: a face of fewer than 3 corners is left out\n"));
+  CHECK(mesh.render({"-q"}).err.empty());
+  CHECK(Mesh(square + "f 1 2 3 4\n").render({"--strict"}).exit_code == 0);
+}
