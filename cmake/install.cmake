@@ -1,5 +1,6 @@
 # Two components, and Debian packages: the program; and the library for other programs, by find_package(castray) or
 # pkg-config.
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON)  # tests need not be built before packages are
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -25,9 +26,8 @@ install(FILES cmake/castray-config.cmake ${PROJECT_BINARY_DIR}/castray-config-ve
 file(RELATIVE_PATH CASTRAY_UP /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)  # to the prefix, wherever it is moved
 configure_file(cmake/castray.pc.in castray.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/castray.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
-foreach(component program library)
-  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT ${component} OPTIONAL)
-endforeach()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/castray RENAME copyright COMPONENT program)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libcastray-dev RENAME copyright COMPONENT library)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the castray authors")
