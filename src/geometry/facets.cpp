@@ -104,7 +104,8 @@ EdgeKey edge_key(const Vec3f& a, const Vec3f& b) {
   return std::min(forward, backward);
 }
 
-/// Facets of the given triangles, each merged with the first later neighbour that it forms a quad with.
+/// Facets of the given triangles, each merged with the first later neighbour that it forms a quad with; not
+/// where an image says what they emit, as that depends on the triangle.
 std::vector<Facet> merge_triangles(const Scene& scene, const std::vector<std::uint32_t>& triangles) {
   std::vector<Facet> facets;
   std::multimap<EdgeKey, std::uint32_t> waiting;  // triangles without a partner, by their edges
@@ -119,7 +120,8 @@ std::vector<Facet> merge_triangles(const Scene& scene, const std::vector<std::ui
         const std::uint32_t j = it->second;
         const bool same_material =
             scene.triangle_material[triangles[j]] == scene.triangle_material[triangles[i]];
-        if (partner[j] == Scene::no_index && same_material &&
+        const bool has_image = scene.material_of(triangles[i]).map(SurfaceParameter::ke).used();
+        if (partner[j] == Scene::no_index && same_material && !has_image &&
             merged(corners_of(scene, triangles[j]), corners)) {
           partner[i] = j;
           partner[j] = i;

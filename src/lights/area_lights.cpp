@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error_bounds.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -21,10 +22,11 @@ Corners corners(const Scene& scene, std::uint32_t triangle) {
 }  // namespace
 
 template <class T>
-AreaLights<T>::AreaLights(const Scene& scene) : material_density_(scene.materials.size()) {
+AreaLights<T>::AreaLights(const Scene& scene) : scene_(scene), material_density_(scene.materials.size()) {
   double total_area = 0, light_area = 0, power = 0;
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i)
     total_area += length(corners(scene, i).twice_area()) / 2;
+  const std::vector<Vec3d> mean = mean_emissions(scene);
   std::vector<double> powers;
   for (const std::uint32_t i : scene.lights) {
     const Corners c = corners(scene, i);
@@ -32,7 +34,7 @@ AreaLights<T>::AreaLights(const Scene& scene) : material_density_(scene.material
     const Vec3d normal = c.twice_area();
     const double area = length(normal) / 2;
     light_area += area;
-    powers.push_back(area * luminance(material.ke));
+    powers.push_back(area * luminance(mean[scene.triangle_material[i]]));
     power += powers.back();
     cumulative_.push_back(power);
     triangles_.push_back({Vec3<T>(c.v0), Vec3<T>(c.v1), Vec3<T>(c.v2), Vec3<T>(normalize(normal)),
@@ -40,7 +42,7 @@ AreaLights<T>::AreaLights(const Scene& scene) : material_density_(scene.material
   }
   for (double& c : cumulative_) c /= power;
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
-    material_density_[m] = power > 0 ? static_cast<T>(luminance(scene.materials[m].ke) / power) : T(0);
+    material_density_[m] = power > 0 ? static_cast<T>(luminance(mean[m]) / power) : T(0);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     triangles_[i].choice = static_cast<T>(powers[i] / power);
     triangles_[i].pdf_area = material_density_[scene.triangle_material[triangles_[i].index]];
@@ -54,7 +56,10 @@ LightPoint<T> AreaLights<T>::sample(double u_choice, Point2<T> u) const {
   const Triangle& t = triangles_[static_cast<std::size_t>(found - cumulative_.begin())];
   const auto [b1, b2] = uniform_triangle(u);
   const TrianglePoint<T> point = point_on_triangle(t.v0, t.v1, t.v2, b1, b2);
-  return {point.p, point.error, t.normal, t.radiance, t.pdf_area, t.choice, t.index, t.two_sided};
+  Vec3<T> radiance = t.radiance;
+  if (const Material& m = scene_.material_of(t.index); m.map(SurfaceParameter::ke).used())
+    radiance = surface_values(scene_, m, TrianglePlace<T>{t.index, b1, b2}).color(slot_emission);
+  return {point.p, point.error, t.normal, radiance, t.pdf_area, t.choice, t.index, t.two_sided};
 }
 
 template class AreaLights<float>;

@@ -20,9 +20,9 @@ struct LightPoint {
   bool two_sided = false;
 };
 
-/// All emissive triangles of a scene. One is chosen with a probability proportional to its area times the
-/// luminance of its emission, then a point uniform on it: the density of a point depends on its material
-/// only.
+/// All emissive triangles of a scene, which must outlive it. One is chosen with a probability proportional to
+/// its area times the luminance of its mean emission, then a point uniform on it: the density of a point
+/// depends on its material only.
 template <class T>
 class AreaLights {
  public:
@@ -47,6 +47,7 @@ class AreaLights {
     bool two_sided;
   };
 
+  const Scene& scene_;
   std::vector<Triangle> triangles_;
   std::vector<double> cumulative_;  ///< probability of choosing one of the lights 0..i
   std::vector<T> material_density_;

@@ -3,6 +3,7 @@
 #include "lights/light_choice_lanes.h"
 #include "lights/light_point_lanes.h"
 #include "lights/rectangle_lanes.h"
+#include "materials/surface_values_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -11,12 +12,14 @@ struct Light {
   Vec origin, edge1, edge2, normal, emission;
   Float area, error, density;
   Mask triangle, two_sided, rectangle;
+  Uint material, source;
 };
 CASTRAY_INLINE Light broadcast(const KernelLight& l) {
   const auto flag = [](uint32_t v) { return Uint(v) == Uint(1u); };
   return {broadcast(l.origin),   broadcast(l.edge1), broadcast(l.edge2), broadcast(l.normal),
           broadcast(l.emission), Float(l.area),      Float(l.error),     Float(l.density),
-          flag(l.triangle),      flag(l.two_sided),  flag(l.rectangle)};
+          flag(l.triangle),      flag(l.two_sided),  flag(l.rectangle),  Uint(l.material),
+          Uint(l.source)};
 }
 CASTRAY_INLINE Light light_of(const LightList& list, Uint light) {
   if (list.count == 1) return broadcast(*list.lights);
@@ -24,10 +27,12 @@ CASTRAY_INLINE Light light_of(const LightList& list, Uint light) {
   const Uint record = light * uint32_t{light_floats};
   const auto vec = [&](float(L::*field)[3]) { return gather_vec(list.lights, field, record); };
   const auto number = [&](float L::*field) { return gather(list.lights, field, record); };
-  const auto flag = [&](uint32_t L::*field) { return gather(list.lights, field, record) == Uint(1u); };
-  return {vec(&L::origin),    vec(&L::edge1),      vec(&L::edge2),     vec(&L::normal),
-          vec(&L::emission),  number(&L::area),    number(&L::error),  number(&L::density),
-          flag(&L::triangle), flag(&L::two_sided), flag(&L::rectangle)};
+  const auto integer = [&](uint32_t L::*field) { return gather(list.lights, field, record); };
+  const auto flag = [&](uint32_t L::*field) { return integer(field) == Uint(1u); };
+  return {vec(&L::origin),    vec(&L::edge1),      vec(&L::edge2),      vec(&L::normal),
+          vec(&L::emission),  number(&L::area),    number(&L::error),   number(&L::density),
+          flag(&L::triangle), flag(&L::two_sided), flag(&L::rectangle), integer(&L::material),
+          integer(&L::source)};
 }
 
 /// A point on the chosen light, uniform in area or, where that can be had and is asked for, in solid angle.
@@ -47,7 +52,11 @@ CASTRAY_INLINE LightPoint sample_area_light(const LightList& list, const LightCh
   const Vec p = fma(light.edge1, a, fma(light.edge2, b, light.origin));
   const Float inverse_density =
       select(chosen.probability > Float(0.f), area / chosen.probability, Float(0.f));
-  return {p,           light.normal, light.emission * inverse_density, light.density, light.two_sided,
+  Vec emission = light.emission;
+  if (list.materials)
+    resolve_emission(*list.materials, *list.triangles, light.material * uint32_t{material_floats},
+                     {light.source, a, b}, emission);
+  return {p,           light.normal, emission * inverse_density, light.density, light.two_sided,
           light.error, Mask(false)};
 }
 

@@ -10,10 +10,12 @@ namespace castray {
 struct KernelLight {
   float origin[3];
   float edge1[3], edge2[3];
-  float normal[3];  ///< unit; the side that emits
-  float emission[3];
+  float normal[3];    ///< unit; the side that emits
+  float emission[3];  ///< the mean where an image says it
   float area;
   uint32_t triangle;  ///< 1: a triangle
+  uint32_t material;  ///< its number
+  uint32_t source;    ///< the scene's triangle, if it is one: its corners are origin, + edge1, + edge2
   uint32_t two_sided;
   float error;         ///< bound of the distance of a computed point from the exact light
   float density;       ///< of a point on it by light sampling, per area; what shares between techniques use
@@ -37,16 +39,21 @@ inline constexpr uint32_t light_leaf = 0x80000000u;
 /// Nodes of a tree that are looked at one by one, before a descent below the chosen one.
 inline constexpr int most_light_cut = 32;
 
+struct MaterialTables;
+struct TriangleTable;
+
 /// All lights of a scene.
 struct LightList {
   const KernelLight* lights;
   uint32_t count;
-  uint32_t cut_count;       ///< 0: lights are chosen by power, not by what they may bring to a point
-  const LightBounds* cut;   ///< nodes that hold all lights, each once
-  const LightBounds* tree;  ///< pairs of siblings
-  float environment[3];     ///< radiance from every direction that hits nothing
-  bool by_solid_angle;      ///< points are uniform in solid angle where that can be had
-  bool may_be_covered;      ///< something may lie too close in front of one to be seen from afar
+  uint32_t cut_count;               ///< 0: lights are chosen by power, not by what they may bring to a point
+  const LightBounds* cut;           ///< nodes that hold all lights, each once
+  const LightBounds* tree;          ///< pairs of siblings
+  float environment[3];             ///< radiance from every direction that hits nothing
+  bool by_solid_angle;              ///< points are uniform in solid angle where that can be had
+  bool may_be_covered;              ///< something may lie too close in front of one to be seen from afar
+  const MaterialTables* materials;  ///< where an image says what some light emits; else null
+  const TriangleTable* triangles;   ///< likewise
 };
 
 }  // namespace castray

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "core/put.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
 namespace {
 
-KernelLight facet_light(const Facet& f, const Material& material) {
+KernelLight facet_light(const Facet& f, const Material& material, const Vec3d& emission) {
   KernelLight light{};
   const Vec3d a{f.corner[0][0], f.corner[0][1], f.corner[0][2]},
       b{f.corner[1][0], f.corner[1][1], f.corner[1][2]};
@@ -19,7 +20,9 @@ KernelLight facet_light(const Facet& f, const Material& material) {
   put(light.edge1, b - a);
   put(light.edge2, d - a);
   put(light.normal, normalize(normal));
-  put(light.emission, material.ke);
+  put(light.emission, emission);
+  light.material = f.material;
+  light.source = f.triangle[0];
   light.area = static_cast<float>(length(normal));
   light.two_sided = material.two_sided_emission;
   light.rectangle = std::abs(dot(b - a, d - a)) <= 1e-6 * length(b - a) * length(d - a);
@@ -27,12 +30,12 @@ KernelLight facet_light(const Facet& f, const Material& material) {
   return light;
 }
 
-KernelLight triangle_light(const Facet& f, int first, const Material& material) {
+KernelLight triangle_light(const Facet& f, int first, const Material& material, const Vec3d& emission) {
   Facet triangle = f;  // corners first, first + 1, first + 2
   std::copy_n(f.corner[first], 3, triangle.corner[0]);
   std::copy_n(f.corner[(first + 1) % 4], 3, triangle.corner[1]);
   std::copy_n(f.corner[(first + 2) % 4], 3, triangle.corner[3]);
-  KernelLight light = facet_light(triangle, material);
+  KernelLight light = facet_light(triangle, material, emission);
   light.area /= 2;
   light.triangle = 1;
   light.rectangle = 0;
@@ -51,17 +54,19 @@ bool is_parallelogram(const Facet& f) {
 }  // namespace
 
 std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Scene& scene) {
+  const std::vector<Vec3d> mean = mean_emissions(scene);
   std::vector<KernelLight> lights;
   for (const Facet& f : facets) {
     const Material& material = scene.materials[f.material];
+    const Vec3d& emission = mean[f.material];
     if (!material.emits()) continue;
     if (f.triangle[0] == f.triangle[1]) {
-      lights.push_back(triangle_light(f, 0, material));
+      lights.push_back(triangle_light(f, 0, material, emission));
     } else if (is_parallelogram(f)) {
-      lights.push_back(facet_light(f, material));
+      lights.push_back(facet_light(f, material, emission));
     } else {
-      lights.push_back(triangle_light(f, 0, material));
-      lights.push_back(triangle_light(f, 2, material));
+      lights.push_back(triangle_light(f, 0, material, emission));
+      lights.push_back(triangle_light(f, 2, material, emission));
     }
   }
   return lights;

@@ -59,9 +59,9 @@ LightList LightTable::list() const {
   return list;
 }
 
-float LightTable::density(const Material& material) const {
+float LightTable::density(const Material& material, const Vec3d& mean_emission) const {
   if (!material.emits()) return 0;
-  return static_cast<float>(luminance(material.ke) * (material.two_sided_emission ? 2 : 1) / power_);
+  return static_cast<float>(luminance(mean_emission) * (material.two_sided_emission ? 2 : 1) / power_);
 }
 
 }  // namespace castray

@@ -21,8 +21,9 @@ class LightTable {
   /// Points into this. What is not of area lights is left 0.
   LightList list() const;
 
-  /// Pdf, per area, of a point on a surface of `material` by light sampling that chooses by power.
-  float density(const Material& material) const;
+  /// Pdf, per area, of a point on a surface of `material`, which emits `mean_emission` on the mean, by light
+  /// sampling that chooses by power.
+  float density(const Material& material, const Vec3d& mean_emission) const;
 
  private:
   std::vector<KernelLight> lights_;

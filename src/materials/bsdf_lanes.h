@@ -49,8 +49,9 @@ CASTRAY_INLINE BsdfSample sample(const Bsdf& b, Vec wo, Float choice, Float u, F
 }
 
 template <class... Models>
-CASTRAY_INLINE void finish_values(ModelList<Models...>, const KernelDetail& d, Float* value) {
-  ((d.type == Models::type ? Models::finish(d, value) : void()), ...);
+CASTRAY_INLINE void finish_values(ModelList<Models...>, const KernelDetail& d, const KernelAlbedo* albedos,
+                                  Float* value) {
+  ((d.type == Models::type ? Models::finish(d, albedos, value) : void()), ...);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -71,7 +71,7 @@ struct ModelDefaults {
   /// Which lanes have a density to evaluate.
   CASTRAY_INLINE static Mask has_density(const Bsdf&) { return Mask(true); }
   /// Makes of a point's values, images looked up, those that Bsdf wants; as the host does for constants.
-  CASTRAY_INLINE static void finish(const KernelDetail&, Float*) {}
+  CASTRAY_INLINE static void finish(const KernelDetail&, const KernelAlbedo*, Float*) {}
 };
 
 }  // namespace castray::CASTRAY_ISA

@@ -17,7 +17,7 @@ struct Conductor {
 
   static const MaterialDescriptor& descriptor() { return conductor_descriptor(); }
   static Conductor make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo*) {
-    return {Vec3<T>(values.reflectance), {static_cast<T>(values.alpha), m.correlated_masking}};
+    return {Vec3<T>(values.color(slot_ks)), {static_cast<T>(values.at(slot_alpha)), m.correlated_masking}};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {

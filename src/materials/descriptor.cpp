@@ -93,12 +93,23 @@ MaterialKey roughness_key() {
 
 bool has_smooth_lobe(const Material& m) { return Ggx<double>{m.alpha}.smooth() && !m.has_alpha_map(); }
 
+bool uses_vertex_colors(const Material& m) {
+  const auto is_key = [](const MaterialKey& key) { return key.field == vertex_colors_key().field; };
+  return m.vertex_colors && std::ranges::any_of(descriptor_of(m.type).keys, is_key);
+}
+
+bool has_lobe_rows(const Material& m) { return descriptor_of(m.type).finish && m.has_alpha_map(); }
+
 std::uint32_t traits_of(const Material& material) {
   std::uint32_t traits = descriptor_of(material.type).traits(material);
   if (!(traits & (trait_specular | trait_transmits))) traits |= trait_shareable;
+  if (material.map(SurfaceParameter::normal).used() || material.map(SurfaceParameter::bump).used())
+    traits |= trait_bent;
   if (material.emits()) traits |= trait_emits | (material.two_sided_emission ? trait_emits_behind : 0u);
   return traits;
 }
+
+int floats_of(const MaterialKey& key) { return key.kind == MaterialKey::Kind::color ? 3 : 1; }
 
 Vec3d value_of(const MaterialKey& key, const Material& material) {
   if (const auto* color = std::get_if<Vec3d Material::*>(&key.field)) return material.*(*color);

@@ -62,6 +62,15 @@ std::uint32_t traits_of(const Material& material);
 /// so: its alpha is at least Ggx::smooth_below.
 bool has_smooth_lobe(const Material& material);
 
+/// Whether the colours of vertices count for a material of this type that asks for them.
+bool uses_vertex_colors(const Material& material);
+
+/// Whether the albedo of a material's lobe is looked up by the alpha of an image (LobeAlbedoRows).
+bool has_lobe_rows(const Material& material);
+
+/// Of its value.
+int floats_of(const MaterialKey& key);
+
 /// A field's value as up to three numbers.
 Vec3d value_of(const MaterialKey& key, const Material& material);
 

@@ -42,8 +42,8 @@ struct Dielectric {
   static const MaterialDescriptor& descriptor() { return dielectric_descriptor(); }
   static Dielectric make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo*) {
     return {static_cast<T>(m.ior),
-            {static_cast<T>(values.alpha), m.correlated_masking},
-            Vec3<T>(values.transmittance)};
+            {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
+            Vec3<T>(values.color(slot_kd))};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {

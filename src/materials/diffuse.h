@@ -17,7 +17,7 @@ struct Diffuse {
 
   static const MaterialDescriptor& descriptor() { return diffuse_descriptor(); }
   static Diffuse make(const SurfaceValues<double>& values, const Material&, const LobeAlbedo*) {
-    return {Vec3<T>(values.kd)};
+    return {Vec3<T>(values.color(slot_kd))};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo, const Vec3<T>& wi) const {

@@ -22,6 +22,9 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];
+    const Uint row =
+        to_uint(fma(sqrt(b.alpha), gather(table, &KernelMaterial::albedo_rows, record), Float(0.5f)));
+    b.albedo = b.albedo + row * uint32_t{albedo_floats};
   } else {
     b.ks = gather_vec(fields_of(table, &KernelMaterial::value) + slot_ks, record);
     b.alpha = gather(fields_of(table, &KernelMaterial::value) + slot_alpha, record);

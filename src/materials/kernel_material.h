@@ -14,6 +14,7 @@ enum MaterialTrait : uint32_t {
   trait_shareable = 8,  ///< neither specular nor transmitting: many points may gather through one point of it
   trait_emits = 16,
   trait_emits_behind = 32,  ///< on both sides
+  trait_bent = 64,          ///< has a normal or bump map
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as
@@ -30,12 +31,17 @@ enum ParameterSlot : int {
   parameter_floats = 12
 };
 
-/// Nodes of LobeAlbedo's table: coefficients a, then b.
+/// LobeAlbedo's table.
 inline constexpr int albedo_intervals = 128;
 struct KernelAlbedo {
-  float a[albedo_intervals + 1], b[albedo_intervals + 1];
+  float a[albedo_intervals + 1], lost[albedo_intervals + 1];
+  float mean_a, mean_lost;
 };
 inline constexpr int albedo_floats = sizeof(KernelAlbedo) / sizeof(float);
+/// LobeAlbedoRows: so many steps of roughness, of which this is the first.
+inline constexpr int albedo_row_steps = 256, first_albedo_row = 3;
+/// What a coat leaves for its base on the mean is taken for at least so much.
+inline constexpr float least_left_for_base = 1e-4f;
 
 struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
@@ -44,6 +50,7 @@ struct KernelMaterial {
   uint32_t type;        ///< MaterialType
   uint32_t traits;      ///< MaterialTrait set
   uint32_t albedo;      ///< microfacet: offset in floats into MaterialTables::albedos
+  float albedo_rows;    ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
   uint32_t detail;      ///< index + 1 into MaterialTables::details, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area
 };
@@ -76,10 +83,12 @@ struct KernelMap {
 struct KernelDetail {
   const KernelMap* maps;
   uint32_t count;
+  const KernelMap *normal, *bump;  ///< that bend the shading normal; or null
   MaterialType type;
   float value[parameter_floats];  ///< as the scene has them
   float least_alpha;              ///< where an image says less
-  float mean_albedo[2];  ///< microfacet: the lobe's mean albedo is ks times the first plus the second
+  uint32_t albedo;                ///< as the material's
+  float albedo_rows;
 };
 
 /// All materials of a scene.

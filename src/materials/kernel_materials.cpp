@@ -4,45 +4,30 @@
 
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
-#include "materials/texture.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
 namespace {
 
-using Values = std::array<double, parameter_floats>;
-
-std::size_t floats_of(const MaterialKey& key) { return key.kind == MaterialKey::Kind::color ? 3 : 1; }
-
-Values values_of(const Material& m) {
-  Values values{};
-  for (const MaterialKey& key : descriptor_of(m.type).keys) {
-    if (!key.slot || key.kind == MaterialKey::Kind::squared) continue;
-    const Vec3d value = value_of(key, m);
-    for (std::size_t c = 0; c < floats_of(key); ++c)
-      values[static_cast<std::size_t>(*key.slot) + c] = value[static_cast<int>(c)];
-  }
-  return values;
-}
-
 KernelAlbedo kernel_albedo(const LobeAlbedo& albedo) {
-  static_assert(LobeAlbedo::intervals == albedo_intervals);
+  static_assert(LobeAlbedo::intervals == albedo_intervals && LobeAlbedoRows::steps == albedo_row_steps &&
+                LobeAlbedoRows::first == first_albedo_row);
   KernelAlbedo k{};
   for (std::size_t i = 0; i <= albedo_intervals; ++i) {
     k.a[i] = static_cast<float>(albedo.nodes()[i].a);
-    k.b[i] = static_cast<float>(albedo.nodes()[i].b);
+    k.lost[i] = static_cast<float>(albedo.nodes()[i].lost);
   }
+  k.mean_a = static_cast<float>(albedo.mean().a);
+  k.mean_lost = static_cast<float>(albedo.mean().lost);
   return k;
 }
 
-KernelMap map_of(const TextureMap& map, const KernelTexture& texture, const MaterialKey& key) {
+KernelMap map_of(const TextureMap& map, const KernelTexture& texture) {
   KernelMap k{};
   k.texture = texture;
-  k.slot = *key.slot;
-  k.count = static_cast<std::int32_t>(floats_of(key));
-  k.squared = key.kind == MaterialKey::Kind::squared;
   k.clamp = map.clamp;
-  k.channel = k.count == 1 && map.channel == Channel::color ? Channel::luminance : map.channel;
+  k.channel = map.channel;
   std::ranges::copy(map.scale, k.scale);
   std::ranges::copy(map.offset, k.offset);
   k.base = map.base;
@@ -63,29 +48,37 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   k.ior = static_cast<float>(m.ior);
   k.type = static_cast<std::uint32_t>(m.type);
   k.traits = traits_of(m);
-  Values values = values_of(m);
+  auto values = SurfaceValues<double>(m).value;
   const double least_alpha = (k.traits & trait_specular) ? 0 : Ggx<double>::smooth_below;
   values[slot_alpha] = (k.traits & trait_specular) ? 0 : std::max(values[slot_alpha], least_alpha);
 
   KernelDetail detail{};
   std::ranges::transform(values, detail.value, [](double v) { return static_cast<float>(v); });
-  if (descriptor.finish) {
-    const LobeAlbedo lobe(values[slot_alpha]);
+  if (has_lobe_rows(m)) {
+    const int row = LobeAlbedoRows::row_of(values[slot_alpha]);
+    k.albedo = albedo_rows();
+    k.albedo_rows = LobeAlbedoRows::steps;
+    values[slot_alpha] = LobeAlbedoRows::alpha_of(row);
+    descriptor.finish((*rows_)[row], values.data());
+  } else if (descriptor.finish) {
+    const LobeAlbedo& lobe = lobes_.of(values[slot_alpha]);
     k.albedo = albedo_offset(values[slot_alpha], lobe);
-    const Vec3d at0 = lobe.mean(Vec3d(0)), at1 = lobe.mean(Vec3d(1));
-    detail.mean_albedo[0] = static_cast<float>(at1.x - at0.x);
-    detail.mean_albedo[1] = static_cast<float>(at0.x);
     descriptor.finish(lobe, values.data());
   }
+  detail.albedo = k.albedo;
+  detail.albedo_rows = k.albedo_rows;
   std::transform(values.begin(), values.begin() + vertex_floats, k.value,
                  [](double v) { return static_cast<float>(v); });
 
-  if (std::vector<KernelMap> maps = maps_of(scene, m); !maps.empty()) {
+  detail.normal = single_map(scene, m.map(SurfaceParameter::normal), 1);
+  detail.bump = single_map(scene, m.map(SurfaceParameter::bump), static_cast<float>(1 / scene.unit));
+  if (std::vector<KernelMap> maps = maps_of(scene, m); !maps.empty() || detail.normal || detail.bump) {
     maps_.push_back(std::move(maps));
     detail.maps = maps_.back().data();
     detail.count = static_cast<std::uint32_t>(maps_.back().size());
     detail.type = m.type;
-    detail.least_alpha = static_cast<float>(least_alpha);
+    detail.least_alpha =
+        static_cast<float>(has_lobe_rows(m) ? LobeAlbedoRows::alpha_of(LobeAlbedoRows::first) : least_alpha);
     details.push_back(detail);
     k.detail = static_cast<std::uint32_t>(details.size());
   }
@@ -99,20 +92,41 @@ std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lob
   return found->second;
 }
 
+std::uint32_t KernelMaterials::albedo_rows() {
+  if (!rows_) {
+    rows_.emplace();
+    first_row_ = static_cast<std::uint32_t>(albedos.size() * albedo_floats);
+    for (const LobeAlbedo& lobe : rows_->rows()) albedos.push_back(kernel_albedo(lobe));
+  }
+  return first_row_;
+}
+
+const KernelMap* KernelMaterials::single_map(const Scene& scene, const TextureMap& map, float gain) {
+  if (!map.used()) return nullptr;
+  KernelMap k = map_of(map, kernel_texture(scene.textures[static_cast<std::size_t>(map.texture)]));
+  if (k.channel == Channel::color) k.channel = Channel::luminance;
+  k.gain *= gain;
+  return &maps_.emplace_back(1, k).front();
+}
+
 std::vector<KernelMap> KernelMaterials::maps_of(const Scene& scene, const Material& m) {
   std::vector<KernelMap> maps;
+  if (uses_vertex_colors(m) && !scene.triangle_colors.empty()) {
+    KernelMap colors{};
+    colors.slot = slot_kd;
+    colors.count = 3;
+    colors.is_colors = 1;
+    maps.push_back(colors);
+  }
   for (const MaterialKey& key : descriptor_of(m.type).keys) {
-    if (key.field == decltype(key.field)(&Material::vertex_colors)) {
-      if (!m.vertex_colors || scene.triangle_colors.empty()) continue;
-      KernelMap colors{};
-      colors.slot = slot_kd;
-      colors.count = 3;
-      colors.is_colors = 1;
-      maps.push_back(colors);
-    }
     if (!key.slot || !key.parameter || !m.map(*key.parameter).used()) continue;
     const TextureMap& map = m.map(*key.parameter);
-    maps.push_back(map_of(map, kernel_texture(scene.textures[static_cast<std::size_t>(map.texture)]), key));
+    KernelMap k = map_of(map, kernel_texture(scene.textures[static_cast<std::size_t>(map.texture)]));
+    k.slot = *key.slot;
+    k.count = floats_of(key);
+    k.squared = key.kind == MaterialKey::Kind::squared;
+    if (k.count == 1 && k.channel == Channel::color) k.channel = Channel::luminance;
+    maps.push_back(k);
   }
   return maps;
 }

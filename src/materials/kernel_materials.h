@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "castray/scene.h"
 #include "materials/descriptor.h"
+#include "materials/lobe_albedo.h"
 
 namespace castray {
 
@@ -28,7 +30,14 @@ class KernelMaterials {
   std::vector<KernelMap> maps_of(const Scene& scene, const Material& m);
   KernelTexture kernel_texture(const Texture& texture);
 
-  std::map<double, std::uint32_t> albedo_offsets_;        ///< by alpha
+  std::uint32_t albedo_rows();  ///< the offset of LobeAlbedoRows
+  /// A map that bends normals; null where there is none.
+  const KernelMap* single_map(const Scene& scene, const TextureMap& map, float gain);
+
+  LobeAlbedos lobes_;
+  std::map<double, std::uint32_t> albedo_offsets_;  ///< by alpha
+  std::optional<LobeAlbedoRows> rows_;
+  std::uint32_t first_row_ = 0;
   std::deque<std::vector<KernelMap>> maps_;               ///< of each of `details`
   std::deque<std::array<std::uint8_t, 8>> small_images_;  ///< of fewer than four bytes
 };

@@ -8,7 +8,7 @@ namespace castray {
 
 namespace {
 
-/// Of quadrature and interpolation. Added, so that what is left for the base is never too much.
+/// Of quadrature and interpolation. Taken off, so that what is left for the base is never too much.
 constexpr double error_bound = 2e-4;
 
 double schlick_weight(double cosine) {
@@ -19,14 +19,11 @@ double schlick_weight(double cosine) {
 /// The split albedo at one cosine, by the midpoint rule on the unit square of the lobe's own sampling, finer
 /// towards u.x = 1 where narrow lobes have their tail.
 LobeAlbedo::Node albedo_at(const Ggx<double>& ggx, double cosine) {
-  if (ggx.smooth()) {
-    const double s = schlick_weight(cosine);
-    return {1 - s, s};
-  }
+  if (ggx.smooth()) return {1 - schlick_weight(cosine), 0};
   constexpr int caps = 48, azimuths = 32;  // the integrand is even in the azimuth: half a turn will do
   const Vec3d wo(std::sqrt(1 - cosine * cosine), 0, cosine);
   const double cap = ggx.cap_scale(wo);
-  LobeAlbedo::Node sum;
+  double a = 0, b = 0;
   for (int i = 0; i < caps; ++i)
     for (int j = 0; j < azimuths; ++j) {
       const double v = 1 - (i + 0.5) / caps;
@@ -34,22 +31,32 @@ LobeAlbedo::Node albedo_at(const Ggx<double>& ggx, double cosine) {
       const Vec3d wi = reflect(wo, h);
       if (!(wi.z > 0)) continue;
       const double weight = 2 * v * ggx.reflection_weight(wo, wi, cap), s = schlick_weight(dot(wo, h));
-      sum.a += weight * (1 - s);
-      sum.b += weight * s;
+      a += weight * (1 - s);
+      b += weight * s;
     }
   constexpr double n = caps * azimuths;
-  return {sum.a / n, sum.b / n};
+  return {a / n, std::max(1 - a / n - b / n - error_bound, 0.0)};
 }
+
+double mix(double low, double high, double t) { return low + (high - low) * t; }
 
 }  // namespace
 
 LobeAlbedo::LobeAlbedo(double alpha) {
   const Ggx<double> ggx{alpha};
-  for (int i = 0; i <= intervals; ++i) {
-    Node& node = nodes_[static_cast<std::size_t>(i)];
-    node = albedo_at(ggx, std::max(cosine<double>(i), 1e-9));
-    if (!ggx.smooth()) node.b = std::min(node.b + error_bound, 1 - node.a);
-  }
+  for (int i = 0; i <= intervals; ++i)
+    nodes_[static_cast<std::size_t>(i)] = albedo_at(ggx, std::max(cosine<double>(i), 1e-9));
+  find_mean();
+}
+
+LobeAlbedo::LobeAlbedo(const LobeAlbedo& low, const LobeAlbedo& high, double t) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    nodes_[i] = {mix(low.nodes_[i].a, high.nodes_[i].a, t), mix(low.nodes_[i].lost, high.nodes_[i].lost, t)};
+  find_mean();
+}
+
+void LobeAlbedo::find_mean() {
+  mean_ = {};
   for (int i = 0; i < intervals; ++i) {  // Simpson's rule is exact for c times a linear function
     const double c0 = cosine<double>(i), c1 = cosine<double>(i + 1), middle = (c0 + c1) / 2;
     const Node &low = nodes_[static_cast<std::size_t>(i)], &high = nodes_[static_cast<std::size_t>(i) + 1];
@@ -57,7 +64,21 @@ LobeAlbedo::LobeAlbedo(double alpha) {
       return 2 * (c1 - c0) / 6 * (c0 * at0 + 4 * middle * (at0 + at1) / 2 + c1 * at1);
     };
     mean_.a += integral(low.a, high.a);
-    mean_.b += integral(low.b, high.b);
+    mean_.lost += integral(low.lost, high.lost);
+  }
+}
+
+LobeAlbedoRows::LobeAlbedoRows() {
+  constexpr int stride = 4;
+  static_assert(steps % stride == 0);
+  std::vector<LobeAlbedo> computed(steps / stride + 1, LobeAlbedo(0));
+#pragma omp parallel for schedule(dynamic)
+  for (int i = 1; i <= steps / stride; ++i)
+    computed[static_cast<std::size_t>(i)] = LobeAlbedo(alpha_of(i * stride));
+  for (int row = 0; row <= steps; ++row) {
+    const auto low = static_cast<std::size_t>(std::min(row / stride, steps / stride - 1));
+    const double t = static_cast<double>(row) / stride - static_cast<double>(low);
+    rows_.emplace_back(computed[low], computed[low + 1], t);
   }
 }
 

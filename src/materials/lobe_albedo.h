@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "castray/vec.h"
 
@@ -11,8 +13,11 @@ namespace castray {
 /// Directional albedo of a GGX lobe with Schlick's Fresnel term, as a function of the cosine to the normal.
 ///
 /// Schlick's term is F0 (1 - s) + s with s = (1 - h.wo)^5, so the albedo of any F0 is E(c) = F0 a(c) + b(c).
-/// a and b are tabulated at c = (i / intervals)^2, finer at grazing angles, and interpolated linearly; the
-/// mean 2 * integral of E(c) c dc is that of the interpolant itself, so that what is divided by it closes.
+/// What it leaves is 1 - E(c) = (1 - F0) a(c) + lost(c), with lost = 1 - a - b what facets of F0 = 1 lose to
+/// one another: a sum of numbers that are not negative, without the cancellation that 1 - E would have
+/// near 1. a and lost are tabulated at c = (i / intervals)^2, finer at grazing angles, and interpolated
+/// linearly; the mean 2 * integral of (1 - E(c)) c dc is that of the interpolant itself, so that what is
+/// divided by it closes.
 class LobeAlbedo {
  public:
   static constexpr int intervals = 128;
@@ -20,26 +25,30 @@ class LobeAlbedo {
   /// Computed in double by quadrature, about 5 ms. `alpha` is GGX's width; 0 is a mirror.
   explicit LobeAlbedo(double alpha);
 
-  /// E at cosine c in [0,1], for the reflectance F0 at normal incidence.
+  /// The table between `low` (t = 0) and `high` (t = 1).
+  LobeAlbedo(const LobeAlbedo& low, const LobeAlbedo& high, double t);
+
+  /// 1 - E at cosine c in [0,1], for the reflectance F0 at normal incidence.
   template <class T>
-  Vec3<T> at(T c, const Vec3<T>& f0) const {
+  Vec3<T> left(T c, const Vec3<T>& f0) const {
     const T x = std::sqrt(c) * T(intervals);
     const int i = x < T(intervals - 1) ? static_cast<int>(x) : intervals - 1;
     const Node &low = nodes_[static_cast<std::size_t>(i)], &high = nodes_[static_cast<std::size_t>(i) + 1];
     const T c0 = cosine<T>(i), c1 = cosine<T>(i + 1);
     const T t = (c - c0) / (c1 - c0);
     const T a = T(low.a) + t * T(high.a - low.a);
-    const T b = T(low.b) + t * T(high.b - low.b);
-    return f0 * a + Vec3<T>(b);
+    const T lost = T(low.lost) + t * T(high.lost - low.lost);
+    return (Vec3<T>(1) - f0) * a + Vec3<T>(lost);
   }
 
-  /// 2 * integral of E(c) c dc over [0,1].
-  Vec3d mean(const Vec3d& f0) const { return f0 * mean_.a + Vec3d(mean_.b); }
+  /// 2 * integral of (1 - E(c)) c dc over [0,1].
+  Vec3d mean_left(const Vec3d& f0) const { return (Vec3d(1) - f0) * mean_.a + Vec3d(mean_.lost); }
 
   struct Node {
-    double a = 0, b = 0;
+    double a = 0, lost = 0;
   };
   const std::array<Node, intervals + 1>& nodes() const { return nodes_; }
+  const Node& mean() const { return mean_; }
 
   template <class T>
   static constexpr T cosine(int i) {
@@ -48,6 +57,8 @@ class LobeAlbedo {
   }
 
  private:
+  void find_mean();
+
   std::array<Node, intervals + 1> nodes_;
   Node mean_;
 };
@@ -59,6 +70,28 @@ class LobeAlbedos {
 
  private:
   std::map<double, LobeAlbedo> tables_;
+};
+
+/// Tables for what an image of alpha can say: alpha is rounded to (row / steps)^2, as fine in roughness as 8
+/// bits are. Every fourth one is computed, the others lie between two.
+class LobeAlbedoRows {
+ public:
+  static constexpr int steps = 256;
+  static constexpr int first = 3;  ///< the least whose alpha is not smooth
+
+  LobeAlbedoRows();
+
+  template <class T>
+  static int row_of(T alpha) {
+    return std::clamp(static_cast<int>(std::sqrt(alpha) * T(steps) + T(0.5)), first, steps);
+  }
+  static constexpr double alpha_of(int row) { return static_cast<double>(row) * row / (steps * steps); }
+
+  const LobeAlbedo& operator[](int row) const { return rows_[static_cast<std::size_t>(row)]; }
+  const std::vector<LobeAlbedo>& rows() const { return rows_; }
+
+ private:
+  std::vector<LobeAlbedo> rows_;
 };
 
 }  // namespace castray

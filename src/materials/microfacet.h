@@ -17,10 +17,13 @@ struct CoatAndBase {
   Vec3d f0, base;
 };
 
-/// Blends the coated base with a metal whose reflectance is the base's colour.
+/// Blends the coated base with a metal whose reflectance is the base's colour. Where the coat leaves less
+/// than least_left_for_base on the mean, all of it at grazing angles, the base gets only part of what is
+/// left: a quotient of such small numbers would be bright specks.
 inline CoatAndBase mix_metal(const Vec3d& kd, const Vec3d& ks, double metallic, const LobeAlbedo& lobe) {
-  const Vec3d f0 = ks + (kd - ks) * metallic;
-  return {f0, kd * (1 - metallic) / (Vec3d(1) - lobe.mean(f0))};
+  const Vec3d f0 = ks + (kd - ks) * metallic, left = lobe.mean_left(f0);
+  const auto at_least = [](double x) { return std::max(x, double{least_left_for_base}); };
+  return {f0, kd * (1 - metallic) / Vec3d(at_least(left.x), at_least(left.y), at_least(left.z))};
 }
 
 /// Cook and Torrance's: a GGX lobe with Schlick's Fresnel term, F0 = ks, over a diffuse base that gets what
@@ -31,16 +34,19 @@ inline CoatAndBase mix_metal(const Vec3d& kd, const Vec3d& ks, double metallic, 
 /// with E the lobe's directional albedo. A lobe too narrow to evaluate is a mirror over the same base.
 template <class T>
 struct Microfacet {
-  Vec3<T> base;  ///< kd / (1 - E_mean)
+  Vec3<T> base;  ///< kd / (1 - E_mean); see mix_metal
   Vec3<T> f0;
   Ggx<T> ggx;
   const LobeAlbedo* albedo;  ///< of ggx.alpha; not owned
 
   static const MaterialDescriptor& descriptor() { return microfacet_descriptor(); }
   static Microfacet make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo* lobe) {
-    const CoatAndBase mixed = mix_metal(values.kd, values.ks, values.metallic, *lobe);
-    return {
-        Vec3<T>(mixed.base), Vec3<T>(mixed.f0), {static_cast<T>(values.alpha), m.correlated_masking}, lobe};
+    const CoatAndBase mixed =
+        mix_metal(values.color(slot_kd), values.color(slot_ks), values.at(slot_metallic), *lobe);
+    return {Vec3<T>(mixed.base),
+            Vec3<T>(mixed.f0),
+            {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
+            lobe};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
@@ -85,14 +91,14 @@ struct Microfacet {
     return f0 * (T(1) - m5) + Vec3<T>(m5);
   }
 
-  Vec3<T> left_for_base(const Vec3<T>& w) const { return Vec3<T>(1) - albedo->at(w.z, f0); }
+  Vec3<T> left_for_base(const Vec3<T>& w) const { return albedo->left(w.z, f0); }
 
-  /// The lobe's share of the directional albedo, by luminance.
+  /// By the luminance of the lobe's albedo and of the greatest weight that a sample of the base may have; but
+  /// not so seldom that the lobe's samples would weigh much more.
   T lobe_probability(const Vec3<T>& wo) const {
-    const Vec3<T> e = albedo->at(wo.z, f0);
-    const T specular = luminance(e);
-    const T diffuse = luminance(base * (Vec3<T>(1) - e));
-    return specular / (specular + diffuse);
+    const Vec3<T> left = left_for_base(wo);
+    const T specular = luminance(Vec3<T>(1) - left), diffuse = luminance(base * left);
+    return std::max(specular / (specular + diffuse), specular / 4);
   }
 };
 

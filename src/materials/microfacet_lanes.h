@@ -9,26 +9,26 @@ CASTRAY_INLINE Vec schlick(Vec f0, Float cosine) {
   return fma(f0, Float(1.f) - m5, Vec{m5, m5, m5});
 }
 
-/// The microfacet lobe's directional albedo; see LobeAlbedo.
-CASTRAY_INLINE Vec lobe_albedo(const Bsdf& b, Float cosine) {
+CASTRAY_INLINE Vec one_minus(const Vec& v) { return {Float(1.f) - v.x, Float(1.f) - v.y, Float(1.f) - v.z}; }
+
+/// What the coat leaves for the base of light to or from a direction: 1 - E; see LobeAlbedo.
+CASTRAY_INLINE Vec left_for_base(const Bsdf& b, Float cosine) {
   const Uint i = to_uint(min(sqrt(cosine) * Float((float)albedo_intervals), Float(albedo_intervals - 1.f)));
   const Float step(1.f / albedo_intervals);
   const Float c0 = square(to_float(i) * step), c1 = square(to_float(i + 1u) * step);
   const Float t = (cosine - c0) / (c1 - c0);
   const Uint at = b.albedo + i;
   const Float a0 = gather(b.albedos, &KernelAlbedo::a, at), a1 = gather(b.albedos, &KernelAlbedo::a, at + 1u);
-  const Float b0 = gather(b.albedos, &KernelAlbedo::b, at), b1 = gather(b.albedos, &KernelAlbedo::b, at + 1u);
-  const Float base = fma(t, b1 - b0, b0);
-  return fma(b.ks, fma(t, a1 - a0, a0), Vec{base, base, base});
+  const Float lost0 = gather(b.albedos, &KernelAlbedo::lost, at),
+              lost1 = gather(b.albedos, &KernelAlbedo::lost, at + 1u);
+  const Float lost = fma(t, lost1 - lost0, lost0);
+  return fma(one_minus(b.ks), fma(t, a1 - a0, a0), Vec{lost, lost, lost});
 }
 
-/// What the microfacet's base gets of light to or from a direction, and how often its lobe is sampled.
-CASTRAY_INLINE Vec left_for_base(Vec lobe) {
-  return {Float(1.f) - lobe.x, Float(1.f) - lobe.y, Float(1.f) - lobe.z};
-}
-CASTRAY_INLINE Float lobe_probability(const Bsdf& b, Vec lobe) {
-  const Float specular = luminance(lobe);
-  return specular / (specular + luminance(b.kd * left_for_base(lobe)));
+/// How often the lobe is sampled; see Microfacet of microfacet.h.
+CASTRAY_INLINE Float lobe_probability(const Bsdf& b, const Vec& left) {
+  const Float specular = luminance(one_minus(left));
+  return max(specular / (specular + luminance(b.kd * left)), specular * Float(0.25f));
 }
 
 /// A coat over a diffuse base; see microfacet.h.
@@ -36,10 +36,9 @@ struct Microfacet : ModelDefaults {
   static constexpr MaterialType type = MaterialType::microfacet;
 
   CASTRAY_INLINE static BsdfValue evaluate(const Bsdf& b, Vec wo, Vec wi) {
-    const Vec lobe_o = lobe_albedo(b, wo.z);
-    const Float probability = lobe_probability(b, lobe_o);
-    const Vec base =
-        b.kd * left_for_base(lobe_o) * left_for_base(lobe_albedo(b, wi.z)) * (wi.z * Float(1.f / pi));
+    const Vec left_o = left_for_base(b, wo.z);
+    const Float probability = lobe_probability(b, left_o);
+    const Vec base = b.kd * left_o * left_for_base(b, wi.z) * (wi.z * Float(1.f / pi));
     const Float base_pdf = (Float(1.f) - probability) * wi.z * Float(1.f / pi);
     const Vec h = normalize(wo + wi);
     const Float d = ggx_distribution(b.alpha, h);
@@ -51,7 +50,7 @@ struct Microfacet : ModelDefaults {
   }
 
   CASTRAY_INLINE static BsdfSample sample(const Bsdf& b, Vec wo, Float choice, Float u, Float v) {
-    const Float lobe = lobe_probability(b, lobe_albedo(b, wo.z));
+    const Float lobe = lobe_probability(b, left_for_base(b, wo.z));
     const Mask to_lobe = choice < lobe;
     const Vec h = ggx_sample_normal(b.alpha, wo, u, v, ggx_cap_scale(b.alpha, wo));
     const Vec wi = select(to_lobe, normalize(reflect(wo, h)), cosine_hemisphere(u, v));
@@ -61,14 +60,23 @@ struct Microfacet : ModelDefaults {
     return choose(to_lobe & b.smooth(), mirror, rough);
   }
 
-  /// mix_metal of microfacet.h.
-  CASTRAY_INLINE static void finish(const KernelDetail& d, Float* value) {
+  /// mix_metal of microfacet.h; where an image gives alpha, that of the nearest row of LobeAlbedoRows.
+  CASTRAY_INLINE static void finish(const KernelDetail& d, const KernelAlbedo* albedos, Float* value) {
+    Uint at(d.albedo);
+    if (d.albedo_rows > 0) {
+      const Uint row = to_uint(fma(sqrt(value[slot_alpha]), Float(d.albedo_rows), Float(0.5f)));
+      const Float roughness = to_float(row) * Float(1.f / albedo_row_steps);
+      value[slot_alpha] = roughness * roughness;
+      at = at + row * uint32_t{albedo_floats};
+    }
+    const Float mean_a = gather(albedos, &KernelAlbedo::mean_a, at),
+                mean_lost = gather(albedos, &KernelAlbedo::mean_lost, at);
     const Float metallic = value[slot_metallic];
     for (int c = 0; c < 3; ++c) {
       const Float kd = value[slot_kd + c], ks = fma(kd - value[slot_ks + c], metallic, value[slot_ks + c]);
+      const Float left = fma(Float(1.f) - ks, mean_a, mean_lost);
       value[slot_ks + c] = ks;
-      value[slot_kd + c] = kd * (Float(1.f) - metallic) /
-                           (Float(1.f) - fma(ks, Float(d.mean_albedo[0]), Float(d.mean_albedo[1])));
+      value[slot_kd + c] = kd * (Float(1.f) - metallic) / max(left, Float(least_left_for_base));
     }
   }
 };

@@ -70,6 +70,11 @@ CASTRAY_INLINE void compress_store(ParameterArray<N>& to, int n, Mask m, const P
   for (int k = 0; k < carried_floats<features>; ++k) compress_store(to.value[k] + n, m, p.value[k]);
 }
 
+/// Whether the material at offset `record` has all of the given traits.
+CASTRAY_INLINE Mask has_traits(const MaterialTables& tables, Uint record, uint32_t traits) {
+  return (gather(tables.materials, &KernelMaterial::traits, record) & traits) == Uint(traits);
+}
+
 /// What the material at offset `record` says itself.
 template <uint32_t features>
 CASTRAY_INLINE Parameters<features> gather_parameters(const MaterialTables& tables, Uint record) {

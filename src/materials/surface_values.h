@@ -6,37 +6,51 @@
 #include <utility>
 
 #include "castray/scene.h"
+#include "materials/descriptor.h"
 #include "materials/ggx.h"
 #include "materials/texture.h"
 
 namespace castray {
 
-/// A material's parameters at a point.
+/// A material's values at a point, by ParameterSlot, as the scene has them.
 template <class T>
 struct SurfaceValues {
-  Vec3<T> kd, ks, reflectance, transmittance, ke;
-  T alpha, metallic, coverage;
+  std::array<T, parameter_floats> value{};
 
-  explicit SurfaceValues(const Material& m)
-      : kd(m.kd),
-        ks(m.ks),
-        reflectance(m.reflectance),
-        transmittance(m.transmittance),
-        ke(m.ke),
-        alpha(std::max(static_cast<T>(m.alpha), m.has_alpha_map() ? Ggx<T>::smooth_below : T(0))),
-        metallic(static_cast<T>(m.metallic)),
-        coverage(static_cast<T>(m.coverage)) {}
+  explicit SurfaceValues(const Material& m) {
+    for (const MaterialKey& key : descriptor_of(m.type).keys) {
+      if (!key.slot || key.kind == MaterialKey::Kind::squared) continue;
+      const Vec3d constant = value_of(key, m);
+      for (int c = 0; c < floats_of(key); ++c) at(*key.slot + c) = static_cast<T>(constant[c]);
+    }
+    keep_alpha_rough(m);
+  }
 
   template <class U>
-  explicit SurfaceValues(const SurfaceValues<U>& v)
-      : kd(v.kd),
-        ks(v.ks),
-        reflectance(v.reflectance),
-        transmittance(v.transmittance),
-        ke(v.ke),
-        alpha(static_cast<T>(v.alpha)),
-        metallic(static_cast<T>(v.metallic)),
-        coverage(static_cast<T>(v.coverage)) {}
+  explicit SurfaceValues(const SurfaceValues<U>& v) {
+    std::ranges::transform(v.value, value.begin(), [](U x) { return static_cast<T>(x); });
+  }
+
+  T& at(int slot) { return value[static_cast<std::size_t>(slot)]; }
+  const T& at(int slot) const { return value[static_cast<std::size_t>(slot)]; }
+  Vec3<T> color(int slot) const { return {at(slot), at(slot + 1), at(slot + 2)}; }
+
+  /// Multiplies what `key` sets by what an image says.
+  void multiply(const MaterialKey& key, const Texture& texture, const TextureMap& map, T u, T v) {
+    if (key.kind == MaterialKey::Kind::color) {
+      const Vec3<T> factor = map_color(texture, map, u, v);
+      for (int c = 0; c < 3; ++c) at(*key.slot + c) *= factor[c];
+    } else {
+      const T factor = map_number(texture, map, u, v);
+      const T power = key.kind == MaterialKey::Kind::squared ? factor * factor : factor;
+      at(*key.slot) = std::clamp(at(*key.slot) * power, T(0), T(1));
+    }
+  }
+
+  /// An image makes no lobe smooth.
+  void keep_alpha_rough(const Material& m) {
+    if (m.has_alpha_map()) at(slot_alpha) = std::max(at(slot_alpha), Ggx<T>::smooth_below);
+  }
 };
 
 /// A point on a triangle by its barycentrics.
@@ -73,45 +87,44 @@ Vec3<T> vertex_color_at(const Scene& scene, const TrianglePlace<T>& place) {
                            Vec3<T>(scene.colors[index[2]]));
 }
 
-/// The one place where images become values: the parameters of `m` at a point of `scene`.
+/// The one place where images become values: those of `m` at a point of `scene`.
 template <class T>
 SurfaceValues<T> surface_values(const Scene& scene, const Material& m, const TrianglePlace<T>& place) {
-  using P = SurfaceParameter;
-  using V = SurfaceValues<T>;
-  constexpr std::pair<P, Vec3<T> V::*> colors[] = {{P::kd, &V::kd},
-                                                   {P::ks, &V::ks},
-                                                   {P::reflectance, &V::reflectance},
-                                                   {P::transmittance, &V::transmittance},
-                                                   {P::ke, &V::ke}};
-  constexpr std::pair<P, T V::*> numbers[] = {
-      {P::alpha, &V::alpha}, {P::metallic, &V::metallic}, {P::coverage, &V::coverage}};
-  V values(m);
-  if (m.vertex_colors) values.kd *= vertex_color_at(scene, place);
+  SurfaceValues<T> values(m);
+  if (uses_vertex_colors(m)) {
+    const Vec3<T> color = vertex_color_at(scene, place);
+    for (int c = 0; c < 3; ++c) values.at(slot_kd + c) *= color[c];
+  }
   const auto uv = m.has_maps() ? uv_at(scene, place) : std::nullopt;
   if (!uv) return values;
-  const auto [u, v] = *uv;
-  const auto texture = [&](const TextureMap& map) -> const Texture& {
-    return scene.textures[static_cast<std::size_t>(map.texture)];
-  };
-  for (const auto& [parameter, field] : colors)
-    if (const TextureMap& map = m.map(parameter); map.used())
-      values.*field *= map_color(texture(map), map, u, v);
-  for (const auto& [parameter, field] : numbers)
-    if (const TextureMap& map = m.map(parameter); map.used())
-      values.*field = std::clamp(values.*field * map_number(texture(map), map, u, v), T(0), T(1));
-  if (const TextureMap& map = m.map(P::roughness); map.used()) {
-    const T factor = map_number(texture(map), map, u, v);
-    values.alpha = std::clamp(values.alpha * factor * factor, T(0), T(1));
+  for (const MaterialKey& key : descriptor_of(m.type).keys) {
+    if (!key.slot || !key.parameter || !m.map(*key.parameter).used()) continue;
+    const TextureMap& map = m.map(*key.parameter);
+    values.multiply(key, scene.textures[static_cast<std::size_t>(map.texture)], map, (*uv)[0], (*uv)[1]);
   }
-  if (m.has_alpha_map()) values.alpha = std::max(values.alpha, Ggx<T>::smooth_below);
+  values.keep_alpha_rough(m);
   return values;
+}
+
+/// The mean emission of a material, its image over its whole area: what lights are chosen by.
+inline Vec3d mean_emission(const Scene& scene, const Material& m) {
+  const TextureMap& map = m.map(SurfaceParameter::ke);
+  if (!map.used() || scene.triangle_uvs.empty()) return m.ke;
+  return m.ke * mean_color(scene.textures[static_cast<std::size_t>(map.texture)], map);
+}
+
+/// Of all materials.
+inline std::vector<Vec3d> mean_emissions(const Scene& scene) {
+  std::vector<Vec3d> mean;
+  for (const Material& m : scene.materials) mean.push_back(mean_emission(scene, m));
+  return mean;
 }
 
 /// The share of the surface that is there at a point.
 template <class T>
 T coverage_at(const Scene& scene, const TrianglePlace<T>& place) {
   const Material& m = scene.material_of(place.triangle);
-  return m.map(SurfaceParameter::coverage).used() ? surface_values(scene, m, place).coverage
+  return m.map(SurfaceParameter::coverage).used() ? surface_values(scene, m, place).at(slot_coverage)
                                                   : static_cast<T>(m.coverage);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "materials/bsdf_lanes.h"
+#include "materials/parameters_lanes.h"
 #include "materials/texture_lanes.h"
 
 // The one place where images become values: between a hit and its vertex.
@@ -75,8 +76,22 @@ inline __attribute__((noinline)) void resolve_values(const MaterialTables& table
     for (int k = 0; k < parameter_floats; ++k) own[k] = Float(d.value[k]);
     apply_maps(d, ~0u, in, here, own);
     own[slot_alpha] = max(own[slot_alpha], Float(d.least_alpha));
-    finish_values(all_models, d, own);
+    finish_values(all_models, d, tables.albedos, own);
     for (int k = 0; k < vertex_floats; ++k) value[k] = select(here, own[k], value[k]);
+  });
+}
+
+/// What is emitted at points of materials of which an image may say it.
+inline __attribute__((noinline)) void resolve_emission(const MaterialTables& tables,
+                                                       const TriangleTable& triangles, const Uint& material,
+                                                       const TrianglePlace& at, Vec& emission) {
+  const MapInputs in = map_inputs(triangles, at);
+  for_each_detail(tables, material, Mask(true), [&](const KernelDetail& d, Mask here) {
+    Float own[parameter_floats];
+    for (int k = 0; k < 3; ++k) own[slot_emission + k] = Float(d.value[slot_emission + k]);
+    apply_maps(d, 1u << slot_emission, in, here, own);
+    emission =
+        select(here, Vec{own[slot_emission], own[slot_emission + 1], own[slot_emission + 2]}, emission);
   });
 }
 

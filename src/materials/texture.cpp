@@ -67,16 +67,14 @@ Texel texel(const Texture& texture, std::size_t index) {
   return texel;
 }
 
-Texel mean_texel(const Texture& texture) {
+Vec3d mean_color(const Texture& texture, const TextureMap& map) {
   const auto count = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
-  std::array<double, 4> sum{};
+  std::array<double, 4> mean{};
   for (std::size_t i = 0; i < count; ++i) {
     const Texel t = texel(texture, i);
-    for (std::size_t c = 0; c < 4; ++c) sum[c] += t[c];
+    for (std::size_t c = 0; c < 4; ++c) mean[c] += t[c] / static_cast<double>(count);
   }
-  Texel mean;
-  for (std::size_t c = 0; c < 4; ++c) mean[c] = static_cast<float>(sum[c] / static_cast<double>(count));
-  return mean;
+  return picked<double>(map, [&](std::size_t channel) { return mean[channel]; });
 }
 
 }  // namespace castray

@@ -24,14 +24,21 @@ const std::array<float, 256>& byte_values(ColorSpace space);
 using Texel = std::array<float, 4>;
 Texel texel(const Texture& texture, std::size_t index);
 
-/// The mean over the texture's area.
-Texel mean_texel(const Texture& texture);
+/// The mean over the texture's area of what a map makes of a colour.
+Vec3d mean_color(const Texture& texture, const TextureMap& map);
 
 /// The four texels around a point, in rows from the top, and the point's place between their centres.
 template <class T>
 struct TexelSquare {
   Texel texels[2][2];
   T s, t;
+
+  /// How the value changes per texel, to the right and downwards.
+  std::array<T, 2> gradient(std::size_t channel) const {
+    const auto at = [&](int row, int column) { return T(texels[row][column][channel]); };
+    return {(at(0, 1) - at(0, 0)) * (T(1) - t) + (at(1, 1) - at(1, 0)) * t,
+            (at(1, 0) - at(0, 0)) * (T(1) - s) + (at(1, 1) - at(0, 1)) * s};
+  }
 
   /// Bilinear.
   T value(std::size_t channel) const {
@@ -48,16 +55,18 @@ T fraction(T x) {
   return f >= 0 && f <= 1 ? f : T(0);
 }
 
-/// (u,v) with v upwards, already scaled and moved as the map says.
+/// Around (u,v) of the mesh, v upwards.
 template <class T>
-TexelSquare<T> texels_around(const Texture& texture, bool clamp, T u, T v) {
+TexelSquare<T> texels_around(const Texture& texture, const TextureMap& map, T u, T v) {
+  const bool clamp = map.clamp;
   const auto inside = [clamp](T x) { return clamp ? (x > 0 ? std::min(x, T(1)) : T(0)) : fraction(x); };
   const auto index = [clamp](T x, int size) {
     const int i = static_cast<int>(x), last = size - 1;
     return static_cast<std::size_t>(i < 0 ? (clamp ? 0 : last) : i > last ? (clamp ? last : 0) : i);
   };
-  const T x = inside(u) * static_cast<T>(texture.width) - T(0.5);
-  const T y = (T(1) - inside(v)) * static_cast<T>(texture.height) - T(0.5);
+  const T x = inside(T(map.scale[0]) * u + T(map.offset[0])) * static_cast<T>(texture.width) - T(0.5);
+  const T y =
+      (T(1) - inside(T(map.scale[1]) * v + T(map.offset[1]))) * static_cast<T>(texture.height) - T(0.5);
   const T x0 = std::floor(x), y0 = std::floor(y);
   TexelSquare<T> square{{}, x - x0, y - y0};
   for (int row = 0; row < 2; ++row)
@@ -68,12 +77,10 @@ TexelSquare<T> texels_around(const Texture& texture, bool clamp, T u, T v) {
   return square;
 }
 
-/// What a map makes of a colour, at (u,v) of the mesh.
-template <class T>
-Vec3<T> map_color(const Texture& texture, const TextureMap& map, T u, T v) {
-  const TexelSquare<T> square = texels_around(texture, map.clamp, T(map.scale[0]) * u + T(map.offset[0]),
-                                              T(map.scale[1]) * v + T(map.offset[1]));
-  const auto value = [&](std::size_t channel) { return T(map.base) + T(map.gain) * square.value(channel); };
+/// What a map makes of a colour whose linear channels `value_of` gives.
+template <class T, class ValueOf>
+Vec3<T> picked(const TextureMap& map, ValueOf value_of) {
+  const auto value = [&](std::size_t channel) { return T(map.base) + T(map.gain) * value_of(channel); };
   switch (map.channel) {
     case Channel::color:
       return {value(0), value(1), value(2)};
@@ -84,11 +91,43 @@ Vec3<T> map_color(const Texture& texture, const TextureMap& map, T u, T v) {
   }
 }
 
+/// What a map makes of a colour, at (u,v) of the mesh.
+template <class T>
+Vec3<T> map_color(const Texture& texture, const TextureMap& map, T u, T v) {
+  const TexelSquare<T> square = texels_around(texture, map, u, v);
+  return picked<T>(map, [&](std::size_t channel) { return square.value(channel); });
+}
+
 /// What a map makes of a number.
 template <class T>
 T map_number(const Texture& texture, TextureMap map, T u, T v) {
   if (map.channel == Channel::color) map.channel = Channel::luminance;
   return map_color(texture, map, u, v).x;
+}
+
+/// The normal that a map holds, in the frame of the texture coordinates; of no particular length.
+template <class T>
+Vec3<T> map_normal(const Texture& texture, const TextureMap& map, T u, T v) {
+  const TexelSquare<T> square = texels_around(texture, map, u, v);
+  const auto component = [&](std::size_t channel) { return 2 * square.value(channel) - T(1); };
+  const auto along = [&](std::size_t axis) { return std::copysign(T(map.gain), T(map.scale[axis])); };
+  return {component(0) * along(0), component(1) * along(1), component(2)};
+}
+
+/// How a map's number changes with u and v.
+template <class T>
+std::array<T, 2> map_gradient(const Texture& texture, const TextureMap& map, T u, T v) {
+  const TexelSquare<T> square = texels_around(texture, map, u, v);
+  const auto gradient = [&](std::size_t channel) { return square.gradient(channel); };
+  std::array<T, 2> g;
+  if (map.channel == Channel::color || map.channel == Channel::luminance) {
+    const auto r = gradient(0), green = gradient(1), b = gradient(2);
+    for (std::size_t i = 0; i < 2; ++i) g[i] = luminance(Vec3<T>(r[i], green[i], b[i]));
+  } else {
+    g = gradient(static_cast<std::size_t>(map.channel) - static_cast<std::size_t>(Channel::red));
+  }
+  return {g[0] * T(map.gain) * T(map.scale[0]) * static_cast<T>(texture.width),
+          -g[1] * T(map.gain) * T(map.scale[1]) * static_cast<T>(texture.height)};
 }
 
 }  // namespace castray

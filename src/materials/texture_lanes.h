@@ -8,21 +8,6 @@ namespace castray::CASTRAY_ISA {
 
 inline constexpr uint32_t no_corner = 0xffffffffu;
 
-/// The interpolated vertex normal, on the side of `facing` (the geometric normal on the viewer's side);
-/// `facing` itself where there is none or where the viewer would be behind it.
-CASTRAY_INLINE Vec smooth_normal(const TriangleTable& table, Uint triangle, Float b1, Float b2, Vec facing,
-                                 Vec to_viewer) {
-  if (!table.normal_corners) return facing;
-  Corners corners = corners_of(table.normal_corners, triangle);
-  const Mask none = corners.a == Uint(no_corner);
-  const auto normal = [&](Uint i) { return gather_vec(table.normals, select(none, Uint(0u), i) * 3u); };
-  Vec n = normal(corners.a) * (Float(1.f) - b1 - b2) + normal(corners.b) * b1 + normal(corners.c) * b2;
-  n = normalize(n);
-  n = select(dot(n, facing) < Float(0.f), -n, n);
-  const Mask usable = ~none & (dot(n, to_viewer) > Float(0.f)) & (length_squared(n) > Float(0.f));
-  return select(usable, n, facing);
-}
-
 /// Rounded down, for |x| < 2^31.
 CASTRAY_INLINE Float floor(Float x) {
   const Float whole = to_float(to_uint(x));
@@ -50,11 +35,24 @@ CASTRAY_INLINE Float texel_channel(const KernelTexture& texture, Uint index, uin
   return c == 3 ? to_float(byte) / Float(255.f) : gather(texture.values, byte);
 }
 
+struct Gradient {
+  Float u, v;
+};
+
 /// The four texels around each lane's point, in rows from the top, and the point's place between their
 /// centres.
 struct TexelSquare {
   Uint index[2][2];
   Float s, t;
+
+  /// How the value changes per texel, to the right and downwards.
+  CASTRAY_INLINE Gradient gradient(const KernelTexture& texture, uint32_t channel) const {
+    const auto texel = [&](int row, int column) {
+      return texel_channel(texture, index[row][column], channel);
+    };
+    const Float one(1.f), a = texel(0, 0), b = texel(0, 1), c = texel(1, 0), d = texel(1, 1);
+    return {(b - a) * (one - t) + (d - c) * t, (c - a) * (one - s) + (d - b) * s};
+  }
 
   /// Bilinear.
   CASTRAY_INLINE Float value(const KernelTexture& texture, uint32_t channel) const {
@@ -68,15 +66,18 @@ struct TexelSquare {
   }
 };
 
-/// (u,v) with v upwards, already scaled and moved as the map says.
-CASTRAY_INLINE TexelSquare texels_around(const KernelTexture& texture, bool clamp, Float u, Float v) {
+/// Around (u,v) of the mesh, v upwards.
+CASTRAY_INLINE TexelSquare texels_around(const KernelMap& map, Float u, Float v) {
+  const KernelTexture& texture = map.texture;
+  const bool clamp = map.clamp;
   const Float zero(0.f), one(1.f), w((float)texture.width), h((float)texture.height);
   const auto inside = [&](Float x) { return clamp ? select(x > zero, min(x, one), zero) : fraction(x); };
   const auto index = [&](Float i, Float size) {
     const Float before = clamp ? zero : size - one, after = clamp ? size - one : zero;
     return to_uint(select(i < zero, before, select(i >= size, after, i)));
   };
-  const Float x = inside(u) * w - Float(0.5f), y = (one - inside(v)) * h - Float(0.5f);
+  const Float x = inside(fma(u, Float(map.scale[0]), Float(map.offset[0]))) * w - Float(0.5f);
+  const Float y = (one - inside(fma(v, Float(map.scale[1]), Float(map.offset[1])))) * h - Float(0.5f);
   const Float x0 = floor(x), y0 = floor(y);
   TexelSquare square{{}, x - x0, y - y0};
   for (int row = 0; row < 2; ++row)
@@ -88,9 +89,7 @@ CASTRAY_INLINE TexelSquare texels_around(const KernelTexture& texture, bool clam
 
 /// What the map makes of a colour, or in x of a number.
 CASTRAY_INLINE Vec map_value(const KernelMap& map, Float u, Float v) {
-  const TexelSquare square =
-      texels_around(map.texture, map.clamp, fma(u, Float(map.scale[0]), Float(map.offset[0])),
-                    fma(v, Float(map.scale[1]), Float(map.offset[1])));
+  const TexelSquare square = texels_around(map, u, v);
   const auto value = [&](uint32_t channel) {
     return fma(square.value(map.texture, channel), Float(map.gain), Float(map.base));
   };
@@ -101,6 +100,31 @@ CASTRAY_INLINE Vec map_value(const KernelMap& map, Float u, Float v) {
   else
     one = value((uint32_t)map.channel - (uint32_t)Channel::red);
   return {one, one, one};
+}
+
+/// The normal that the map holds, in the frame of the texture coordinates; of no particular length.
+CASTRAY_INLINE Vec map_normal(const KernelMap& map, Float u, Float v) {
+  const TexelSquare square = texels_around(map, u, v);
+  const auto component = [&](uint32_t channel, float along) {
+    return fma(square.value(map.texture, channel), Float(2.f), Float(-1.f)) * Float(along);
+  };
+  const auto along = [&](int axis) { return __builtin_copysignf(map.gain, map.scale[axis]); };
+  return {component(0, along(0)), component(1, along(1)), component(2, 1)};
+}
+
+/// How the map's number changes with u and v.
+CASTRAY_INLINE Gradient map_gradient(const KernelMap& map, Float u, Float v) {
+  const TexelSquare square = texels_around(map, u, v);
+  Gradient g;
+  if (map.channel == Channel::luminance) {
+    const Gradient red = square.gradient(map.texture, 0), green = square.gradient(map.texture, 1),
+                   blue = square.gradient(map.texture, 2);
+    g = {luminance(Vec{red.u, green.u, blue.u}), luminance(Vec{red.v, green.v, blue.v})};
+  } else {
+    g = square.gradient(map.texture, (uint32_t)map.channel - (uint32_t)Channel::red);
+  }
+  return {g.u * Float(map.gain * map.scale[0] * (float)map.texture.width),
+          g.v * Float(-map.gain * map.scale[1] * (float)map.texture.height)};
 }
 
 /// Points on triangles.

@@ -5,6 +5,7 @@
 #include "core/error_bounds.h"
 #include "core/frame.h"
 #include "geometry/ray.h"
+#include "materials/bent_normal.h"
 #include "materials/material_table.h"
 #include "materials/surface_values.h"
 
@@ -52,9 +53,9 @@ class Surfaces {
     const std::uint16_t material = scene_.triangle_material[hit.triangle];
     const Vec3<T>& normal = normals_[hit.triangle];
     const Vec3<T> to_viewer = -ray.direction;
-    const Frame<T> frame = make_frame(shading_normal(hit, normal, to_viewer));
     const Material& m = scene_.materials[material];
     const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
+    const Frame<T> frame = make_frame(shading_normal(m, place, normal, to_viewer));
     Surface<T> surface{point.p,
                        point.error,
                        normal,
@@ -68,7 +69,7 @@ class Surfaces {
     if (m.has_maps() || m.vertex_colors) {
       const SurfaceValues<T> values = surface_values(scene_, m, place);
       surface.bsdf = materials_.at(material, values);
-      surface.emission = values.ke;
+      surface.emission = values.color(slot_emission);
     }
     return surface;
   }
@@ -76,16 +77,25 @@ class Surfaces {
  private:
   /// The interpolated vertex normal, on the geometric normal's side; the geometric one where there is none or
   /// where the viewer would be behind it.
-  Vec3<T> shading_normal(const Hit<T>& hit, const Vec3<T>& normal, const Vec3<T>& to_viewer) const {
+  Vec3<T> smooth_normal(const TrianglePlace<T>& place, const Vec3<T>& normal,
+                        const Vec3<T>& to_viewer) const {
     if (scene_.triangle_normals.empty()) return normal;
-    const Index3& n = scene_.triangle_normals[hit.triangle];
+    const Index3& n = scene_.triangle_normals[place.triangle];
     if (n[0] == Scene::no_index) return normal;
-    Vec3<T> smooth = Vec3<T>(scene_.normals[n[0]]) * (T(1) - hit.b1 - hit.b2) +
-                     Vec3<T>(scene_.normals[n[1]]) * hit.b1 + Vec3<T>(scene_.normals[n[2]]) * hit.b2;
-    smooth = normalize(smooth);
+    Vec3<T> smooth = normalize(place.interpolate(Vec3<T>(scene_.normals[n[0]]), Vec3<T>(scene_.normals[n[1]]),
+                                                 Vec3<T>(scene_.normals[n[2]])));
     if (!is_finite(smooth)) return normal;
     if (dot(smooth, normal) < 0) smooth = -smooth;
     return dot(smooth, to_viewer) * dot(normal, to_viewer) > 0 ? smooth : normal;
+  }
+
+  /// The same, bent by the material's maps where the viewer is still in front of it.
+  Vec3<T> shading_normal(const Material& m, const TrianglePlace<T>& place, const Vec3<T>& normal,
+                         const Vec3<T>& to_viewer) const {
+    const Vec3<T> smooth = smooth_normal(place, normal, to_viewer);
+    const Vec3<T> bent = bent_normal(scene_, m, place, smooth);
+    const bool usable = dot(bent, to_viewer) * dot(normal, to_viewer) > 0 && dot(bent, normal) > 0;
+    return usable ? bent : smooth;
   }
 
   const Scene& scene_;

@@ -9,7 +9,7 @@
 #include "castray/error.h"
 #include "castray/image.h"
 #include "core/text.h"
-#include "materials/texture.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -216,6 +216,8 @@ Scene SceneBuilder::finish() {
   scene.colors = std::move(mesh_.colors);
   scene.triangle_colors = std::move(mesh_.triangle_colors);
   scene.warnings = warnings.take();
+  for (Material& m : scene.materials)  // an image that is black everywhere is no light
+    if (mean_emission(scene, m) == Vec3d()) m.ke = {};
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
   scene.default_environment = scene.lights.empty() && !environment_given;

@@ -28,6 +28,9 @@ CASTRAY_INLINE Vec fma_vec(Vec a, Vec b, Vec c) {
 CASTRAY_INLINE Vec select(Mask m, Vec a, Vec b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
+CASTRAY_INLINE Vec cross(Vec a, Vec b) {
+  return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
+}
 CASTRAY_INLINE Vec magnitude(Vec a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
 CASTRAY_INLINE Float sum_abs(Vec a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 CASTRAY_INLINE Float max_component(Vec a) { return max(a.x, max(a.y, a.z)); }

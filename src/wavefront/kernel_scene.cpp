@@ -3,6 +3,7 @@
 #include "cameras/pinhole.h"
 #include "core/put.h"
 #include "lights/covered_lights.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -27,6 +28,12 @@ TriangleTable triangle_table(const Scene& scene, const std::vector<std::uint32_t
     table.color_corners = scene.triangle_colors.data()->data();
   }
   return table;
+}
+
+bool has_emission_images(const Scene& scene) {
+  return !scene.triangle_uvs.empty() && std::ranges::any_of(scene.materials, [](const Material& m) {
+    return m.emits() && m.map(SurfaceParameter::ke).used();
+  });
 }
 
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {
@@ -61,8 +68,13 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   }
   view.lights.by_solid_angle = plan.lights_by_solid_angle;
   put(view.lights.environment, scene.environment);
+  const std::vector<Vec3d> emission = mean_emissions(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
-    materials.materials[i].light_density = lights.density(scene.materials[i]);
+    materials.materials[i].light_density = lights.density(scene.materials[i], emission[i]);
+  if (has_emission_images(scene)) {
+    view.lights.materials = &view;
+    view.lights.triangles = &view.geometry.tree.triangles;
+  }
   view.materials = materials.materials.data();
   view.albedos = materials.albedos.data();
   view.details = materials.details.data();

@@ -5,11 +5,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Whether the material at offset `record` has all of the given traits.
-CASTRAY_INLINE Mask has_traits(const KernelScene& scene, Uint record, uint32_t traits) {
-  return (gather(scene.materials, &KernelMaterial::traits, record) & traits) == Uint(traits);
-}
-
 /// The BSDF at vertices, the frame it lives in, and the viewer's direction there.
 struct Shading {
   Bsdf bsdf;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lights/lights_lanes.h"
+#include "materials/normals_lanes.h"
 #include "materials/surface_values_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/radiance_lanes.h"
@@ -55,9 +56,10 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     const Float towards = dot(x.normal, d);
     const Mask front = towards < Float(0.f);
     const Vec facing = select(front, x.normal, -x.normal);
+    const TrianglePlace place{primitive, b1, b2};
     Parameters<features> parameters = gather_parameters<features>(scene, material);
     if constexpr (features & feature_detail)
-      resolve_values(scene, scene.geometry.tree.triangles, material, {primitive, b1, b2}, parameters.value);
+      resolve_values(scene, scene.geometry.tree.triangles, material, place, parameters.value);
     const Float arrival = load(paths.arrival + i);
     if (see_emission) {
       const Vec emission = found_emission(scene, material, parameters, front, arrival, t, towards);
@@ -70,8 +72,11 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     if constexpr (features & feature_materials) {
       const Vec to_viewer = -normalize(d);
       Vec shading_normal = facing;
-      if constexpr (features & feature_detail)
-        shading_normal = smooth_normal(scene.geometry.tree.triangles, primitive, b1, b2, facing, to_viewer);
+      if constexpr (features & feature_detail) {
+        shading_normal = smooth_normal(scene.geometry.tree.triangles, place, facing, to_viewer);
+        bend_normals(scene, scene.geometry.tree.triangles, material, place, front, facing, to_viewer,
+                     shading_normal);
+      }
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);
       compress_store(out.error + n, kept, x.error);

@@ -143,6 +143,23 @@ const std::vector<Case> cases = {
     in_line("two_sided_emission is a string",
             R"(  "materials": { "a": { "type": "diffuse", "two_sided_emission": "yes" } },)",
             "s.json:2:66: \"two_sided_emission\" must be true or false, not a string"),
+    in_line("a parameter's image that is not there",
+            R"(  "materials": { "a": { "type": "diffuse", "kd": { "image": "gone.png" } } },)",
+            "s.json:2:61: no such file: gone.png"),
+    in_line("a parameter's object without an image",
+            R"(  "materials": { "a": { "type": "diffuse", "kd": { "scale": [2,2] } } },)",
+            "s.json:2:50: \"kd\" needs the key 'image'"),
+    in_line(
+        "unknown channel",
+        R"(  "materials": { "a": { "type": "conductor", "alpha": { "image": "s.json", "channel": "rot" } } },)",
+        "s.json:2:87: unknown channel 'rot'; known: color, red, green, blue, alpha, luminance"),
+    in_line(
+        "a factor of a normal map",
+        R"(  "materials": { "a": { "type": "diffuse", "normal_map": { "image": "s.json", "factor": 2 } } },)",
+        "s.json:2:79: \"normal_map\" has no factor; use \"gain\""),
+    in_line("an index of refraction cannot be an image",
+            R"(  "materials": { "a": { "type": "dielectric", "ior": { "image": "s.json" } } },)",
+            "s.json:2:54: \"ior\" must be a number, not an object"),
     // Meshes
     in_mesh("material not found", R"({ "obj": "good.obj", "material": "whit" })",
             "s.json:4:38: material 'whit' not found; did you mean 'white'?"),

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <string>
 
+#include "castray/image.h"
 #include "castray/scene.h"
 #include "temporary_folder.h"
 
@@ -138,4 +139,44 @@ TEST_CASE("a camera is right-handed and orthonormal") {
   check_near(camera.direction(10, 5, 10, 10), camera.forward + camera.right);
   // Also where squares would overflow or vanish.
   check_near(make_camera({0, 0, 0}, {1e200, 0, 0}, {0, 1e-200, 0}, 40).up, {0, 1, 0});
+}
+
+TEST_CASE("parameters of materials may be images") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  write_image(folder / "t.png", Image(2, 2));
+  std::ofstream(folder / "s.json") << R"({ "materials": { "m": { "type": "microfacet",
+    "kd": { "image": "t.png", "factor": [0.5, 0.25, 1], "scale": [2, 3], "offset": [0.5, 0], "clamp": true },
+    "ks": { "image": "t.png" }, "roughness": { "image": "t.png", "channel": "green", "factor": 0.5 },
+    "metallic": 0.5, "normal_map": { "image": "t.png", "gain": 0.5 },
+    "coverage": { "image": "t.png", "base": 1, "gain": -1 } } },
+    "meshes": [ { "obj": "t.obj", "material": "m" } ] })";
+  const Scene scene = load_scene(folder / "s.json");
+  const Material& m = scene.material_of(0);
+  CHECK(m.kd == Vec3d(0.5, 0.25, 1));
+  CHECK(m.ks == Vec3d(1));
+  CHECK(m.alpha == 0.25);
+  CHECK(m.metallic == 0.5);
+  REQUIRE(scene.textures.size() == 2);  // the file as colours and as data
+  const TextureMap& kd = m.map(SurfaceParameter::kd);
+  CHECK(scene.textures[static_cast<std::size_t>(kd.texture)].color_space == ColorSpace::srgb);
+  CHECK(scene.textures[static_cast<std::size_t>(kd.texture)].bytes.size() == 12);
+  CHECK(kd.scale == std::array<float, 2>{2, 3});
+  CHECK(kd.offset == std::array<float, 2>{0.5f, 0});
+  CHECK(kd.clamp);
+  const TextureMap& roughness = m.map(SurfaceParameter::roughness);
+  CHECK(roughness.channel == Channel::green);
+  CHECK(scene.textures[static_cast<std::size_t>(roughness.texture)].color_space == ColorSpace::linear);
+  CHECK(m.map(SurfaceParameter::normal).gain == 0.5f);
+  CHECK(m.map(SurfaceParameter::coverage).base == 1);
+  CHECK_FALSE(m.map(SurfaceParameter::alpha).used());
+}
+
+TEST_CASE("a light whose image is black everywhere is none") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  write_image(folder / "t.png", Image(2, 2));
+  std::ofstream(folder / "s.json") << R"({ "materials": { "m": { "type": "diffuse",
+    "ke": { "image": "t.png", "factor": [5, 5, 5] } } }, "meshes": [ { "obj": "t.obj", "material": "m" } ] })";
+  CHECK(load_scene(folder / "s.json").lights.empty());
 }

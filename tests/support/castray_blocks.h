@@ -1,0 +1,71 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+
+#include <string>
+#include <vector>
+
+#include "castray/render.h"
+#include "reference_images.h"
+#include "test_scenes.h"
+
+// Renders of the wavefront against castRay in double precision, block by block.
+
+namespace castray::test {
+
+inline constexpr int side = 32, block = 4;
+
+inline RenderOptions wavefront_options(std::uint64_t spp, std::uint64_t seed = 1) {
+  return wavefront_options(side, spp, seed);
+}
+
+using Blocks = std::vector<std::vector<double>>;
+
+/// Block means of renders with independent seeds.
+inline Blocks blocks_of(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
+  Blocks blocks;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    options.seed = 1000 + seed;
+    const RenderResult result = render(scene, options);
+    REQUIRE(result.film.nonfinite_samples == 0);
+    blocks.push_back(block_means(result.film.image(), block));
+  }
+  return blocks;
+}
+
+inline RenderOptions as_reference(RenderOptions options) {
+  options.integrator = Integrator::reference;
+  options.precision = Precision::float64;
+  options.sampler = SamplerKind::independent;
+  options.reuse.automatic = true;
+  options.isa = "auto";
+  return options;
+}
+
+/// What castRay makes of a scene, with the variance of its mean.
+struct Expected : ExpectedBlocks {
+  using ExpectedBlocks::ExpectedBlocks;
+
+  explicit Expected(const Scene& scene, const RenderOptions& options = wavefront_options(16),
+                    std::uint64_t seeds = 24)
+      : ExpectedBlocks(blocks_of(scene, as_reference(options), seeds)) {}
+
+  /// No block is off, at a false-alarm rate of 1e-4 a call, nor are all of them a little: 192 scores, of
+  /// which the root mean square has a standard error of 0.05.
+  void check(const std::string& what, const Scene& scene, const RenderOptions& options,
+             std::uint64_t seeds = 24) const {
+    const BlockScores scores = block_scores(blocks_of(scene, options, seeds), mean, variance);
+    CAPTURE(what, scores.rms, scores.largest);
+    CHECK(scores.largest < score_limit(scores.count, 1e-4));
+    CHECK(scores.rms < 1.25);
+  }
+};
+
+/// Shared and plain paths.
+inline void check_scene(const std::string& name, const Scene& scene) {
+  const Expected expected(scene);
+  expected.check(name + ", shared", scene, wavefront_options(4));
+  expected.check(name + ", plain", scene, plain(wavefront_options(8)));
+}
+
+}  // namespace castray::test
