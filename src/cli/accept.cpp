@@ -39,6 +39,7 @@ void accept_file(const fs::path& image, const fs::path& reference) {
 }
 
 int accept(const fs::path& image, const fs::path& reference) {
+  if (!fs::exists(image)) throw InputError({image.string()}, "does not exist");
   if (!fs::is_directory(image)) {
     accept_file(image, reference);
     return 0;
@@ -49,6 +50,7 @@ int accept(const fs::path& image, const fs::path& reference) {
     fs::create_directories((reference / name).parent_path());
     accept_file(image / name, reference / name);
   }
+  fmt::print("references: {}\n", size_text(reference));
   return 0;
 }
 

@@ -96,6 +96,13 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
       names += (names.empty() ? "" : ", ") + sub->get_name();
     return "say what to do: " + names + "; see castray --help";
   }
+  if (dynamic_cast<const CLI::ConversionError*>(&error))
+    if (const std::string text = error.what(); text.find(" = ") != std::string::npos) {
+      constexpr std::string_view before = "Could not convert: ";
+      const std::size_t begin = text.starts_with(before) ? before.size() : 0, equals = text.find(" = ");
+      return text.substr(begin, equals - begin) + " '" + printable(text.substr(equals + 3)) +
+             "': must be a number";
+    }
   return one_line(error.what());
 }
 

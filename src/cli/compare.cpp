@@ -7,6 +7,7 @@
 #include "castray/error.h"
 #include "cli/commands.h"
 #include "cli/compare_report.h"
+#include "cli/display_flags.h"
 #include "cli/image_folder.h"
 #include "cli/shell_word.h"
 #include "core/files.h"
@@ -30,27 +31,13 @@ struct Compare {
 
   int run() const {
     const LimitsFile limits = all_limits();
+    const Viewing viewing{flags.display(), !flags.tone.empty(), layer};
     const bool folders = fs::is_directory(image);
-    flags.display();
-    if (!layer.empty() && !folders && !has_layers(image) && !has_layers(reference))
-      throw InputError("--layer: neither file has layers, which only .exr files have; leave it out");
-    if (folders && !fs::exists(reference))
-      throw InputError({reference.string()}, "does not exist; 'castray accept' makes references of images");
-    if (folders != fs::is_directory(reference))
-      throw InputError({(folders ? image : reference).string()},
-                       "is a folder, and the other is not; give two of a kind");
-    if (folders && !heat_map_file.empty())
-      throw InputError("--heatmap: draws one pair of images; use --html for folders");
-    for (const fs::path& output : {json, junit, html})
-      if (!output.empty()) check_writable(output);
-    if (!heat_map_file.empty()) check_output_image(heat_map_file);
-
-    const std::vector<Comparison> comparisons = folders ? compare_folders(limits) : compare_one(limits);
-    fmt::print("{}", text_report(comparisons));
-    if (!json.empty()) write_file(json, json_report(comparisons, folders));
-    if (!junit.empty()) write_file(junit, junit_report(comparisons));
-    if (!html.empty()) write_file(html, html_report(comparisons, arguments(), given_flags()));
-    if (!heat_map_file.empty()) write_heat_map(comparisons.front());
+    check_inputs(folders);
+    check_outputs(folders);
+    const std::vector<Comparison> comparisons =
+        folders ? compare_folders(limits, viewing) : compare_one(limits, viewing);
+    write_reports(comparisons, folders);
     if (std::any_of(comparisons.begin(), comparisons.end(), [](const auto& c) { return !c.error.empty(); }))
       return 2;
     return std::all_of(comparisons.begin(), comparisons.end(), [](const auto& c) { return c.pass(); }) ? 0
@@ -58,6 +45,42 @@ struct Compare {
   }
 
  private:
+  void check_inputs(bool folders) const {
+    if (!fs::exists(image)) throw InputError({image.string()}, "does not exist");
+    if (!fs::exists(reference))
+      throw InputError({reference.string()}, "does not exist; 'castray accept' makes references of images");
+    if (folders != fs::is_directory(reference))
+      throw InputError({(folders ? image : reference).string()},
+                       "is a folder, and the other is not; give two of a kind");
+    if (!layer.empty() && !folders && !has_layers(image) && !has_layers(reference))
+      throw InputError("--layer: neither file has layers, which only .exr files have; leave it out");
+  }
+
+  void check_outputs(bool folders) const {
+    if (folders && !heat_map_file.empty())
+      throw InputError("--heatmap: draws one pair of images; use --html for folders");
+    for (const fs::path& output : {json, junit, html})
+      if (!output.empty()) check_writable(output);
+    if (!heat_map_file.empty()) check_output_image(heat_map_file);
+  }
+
+  /// The table goes where no file goes: to stderr if stdout was asked for as a file.
+  void write_reports(const std::vector<Comparison>& comparisons, bool folders) const {
+    const auto is_stdout = [](const fs::path& file) { return is_standard_output(file); };
+    const fs::path outputs[] = {json, junit, html, heat_map_file};
+    const bool taken = std::any_of(std::begin(outputs), std::end(outputs), is_stdout);
+    fmt::print(taken ? stderr : stdout, "{}", text_report(comparisons));
+    if (folders) print_sizes(taken ? stderr : stdout);
+    if (!json.empty()) write_file(json, json_report(comparisons, folders));
+    if (!junit.empty()) write_file(junit, junit_report(comparisons));
+    if (!html.empty()) write_file(html, html_report(comparisons, arguments(), given_flags()));
+    if (!heat_map_file.empty()) write_heat_map(comparisons.front());
+  }
+
+  void print_sizes(std::FILE* to) const {
+    fmt::print(to, "images {}, references {}\n", size_text(image), size_text(reference));
+  }
+
   LimitsFile all_limits() const {
     LimitsFile file;
     if (!limits_file.empty()) file = read_limits(limits_file);
@@ -71,14 +94,14 @@ struct Compare {
     return file;
   }
 
-  std::vector<Comparison> compare_one(const LimitsFile& limits) const {
+  std::vector<Comparison> compare_one(const LimitsFile& limits, const Viewing& viewing) const {
     const std::string name = reference.filename().string();
-    Comparison comparison = compare_files(name, image, reference, limits.of(name), flags, layer);
+    Comparison comparison = compare_files(name, image, reference, limits.of(name), viewing);
     if (!comparison.error.empty()) throw InputError(comparison.error);
     return {std::move(comparison)};
   }
 
-  std::vector<Comparison> compare_folders(const LimitsFile& limits) const {
+  std::vector<Comparison> compare_folders(const LimitsFile& limits, const Viewing& viewing) const {
     std::set<std::string> names = images_below(reference);
     names.merge(images_below(image));
     for (const auto& [name, own] : limits.by_name)
@@ -88,8 +111,7 @@ struct Compare {
                                                      suggestion(name, {names.begin(), names.end()}));
     std::vector<Comparison> comparisons;
     for (const std::string& name : names) {
-      comparisons.push_back(
-          compare_files(name, image / name, reference / name, limits.of(name), flags, layer));
+      comparisons.push_back(compare_files(name, image / name, reference / name, limits.of(name), viewing));
       fmt::print(stderr, "compared {} of {}: {}\n", comparisons.size(), names.size(), name);
     }
     return comparisons;

@@ -49,6 +49,29 @@ void add_heat_map(json& item, const Comparison& c) {
   item["heat"] = "data:image/png;base64," + base64(encode_png(map, {{ToneCurve::Kind::linear, 1}, 0}));
 }
 
+/// At most this many pixels a side, each the mean of those it covers.
+constexpr int thumbnail_side = 192;
+
+Image thumbnail(const Image& image) {
+  const int step = (std::max(image.width, image.height) + thumbnail_side - 1) / thumbnail_side;
+  Image small((image.width + step - 1) / step, (image.height + step - 1) / step);
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      const int x1 = std::min((x + 1) * step, image.width), y1 = std::min((y + 1) * step, image.height);
+      Vec3f sum;
+      for (int v = y * step; v < y1; ++v)
+        for (int u = x * step; u < x1; ++u) sum += image.at(u, v);
+      small.at(x, y) = sum / static_cast<float>((x1 - x * step) * (y1 - y * step));
+    }
+  return small;
+}
+
+void add_thumbnail(json& item, const Comparison& c) {
+  const Display as_stored{{ToneCurve::Kind::linear, 1}, 0};
+  item["thumbnail"] =
+      "data:image/png;base64," + base64(encode_png(thumbnail(c.image), c.encoded ? as_stored : c.display));
+}
+
 /// Rows of the table: name, value, detail, limit, whether it passes.
 json measures_of(const Comparison& c) {
   json rows = json::array();
@@ -63,7 +86,8 @@ json measures_of(const Comparison& c) {
   }
   for (const Check& check : c.checks) {
     if (check.name == "ztest")
-      rows.push_back({{"name", check.name}, {"value", fmt::format("p = {:.3g}", c.noise->p)}});
+      rows.push_back({{"name", check.name},
+                      {"value", fmt::format("p {} {:.3g}", c.noise->differs() ? "<" : "=", c.noise->p)}});
     else if (check.name == "allow-pixels")
       rows.push_back({{"name", check.name}, {"value", fmt::format("{:.4g} %", *c.percent_beyond)}});
     else
@@ -73,14 +97,15 @@ json measures_of(const Comparison& c) {
   return rows;
 }
 
-json item_of(const Comparison& c, const std::string& flags) {
+/// `whole`: with all pixels, even if it passes.
+json item_of(const Comparison& c, const std::string& flags, bool whole) {
   const std::string files = shell_word(c.image_file.string()) + " " + shell_word(c.reference_file.string());
   json item{{"name", c.name},
             {"verdict", c.pass()          ? "pass"
                         : c.error.empty() ? "fail"
                                           : "error"},
             {"why", complaint(c)},
-            {"repeat", "castray compare " + files + flags}};
+            {"repeat", "castray compare " + files + flags + (c.pass() && !whole ? " --html pair.html" : "")}};
   if (std::filesystem::exists(c.image_file)) item["accept"] = "castray accept " + files;
   if (!c.error.empty()) return item;
   item["width"] = c.image.width;
@@ -89,6 +114,11 @@ json item_of(const Comparison& c, const std::string& flags) {
   item["tone"] = to_string(c.display.tone);
   item["exposure"] = c.display.exposure;
   item["measures"] = measures_of(c);
+  if (c.pass() && !whole) {
+    add_thumbnail(item, c);
+    return item;
+  }
+  if (c.worst) item["worst"] = {c.worst->x0, c.worst->y0, c.worst->x1, c.worst->y1};
   add_pixels(item, c);
   add_heat_map(item, c);
   return item;
@@ -104,7 +134,7 @@ std::string html_report(const std::vector<Comparison>& comparisons, const std::s
   json data{{"version", CASTRAY_VERSION},
             {"command", "castray compare " + arguments + flags},
             {"items", json::array()}};
-  for (const Comparison* c : sorted) data["items"].push_back(item_of(*c, flags));
+  for (const Comparison* c : sorted) data["items"].push_back(item_of(*c, flags, comparisons.size() == 1));
   std::string text = data.dump(-1, ' ', false, json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   std::string page = compare_page;

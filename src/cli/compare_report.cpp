@@ -33,6 +33,9 @@ const Check* check_of(const Comparison& c, const std::string& name) {
   return found == c.checks.end() ? nullptr : &*found;
 }
 
+constexpr const char* not_judged =
+    "no limits were given, so nothing was judged; give --max METRIC=VALUE, --ztest ALPHA or --limits FILE\n";
+
 /// A line each.
 std::string notes_of(const Comparison& c, const char* before) {
   std::string text;
@@ -55,6 +58,7 @@ std::string table(const Comparison& c) {
     if (check.name == "allow-pixels" || check.name == "ztest")
       text += fmt::format("  {:<12}  {}: {}\n", check.name, check.pass ? "within" : "EXCEEDS", check.said);
   text += notes_of(c, "  note: ");
+  if (c.checks.empty()) text += not_judged;
   if (!c.checks.empty()) text += c.pass() ? "within the limits\n" : "NOT within the limits\n";
   return text;
 }
@@ -91,6 +95,7 @@ json to_json(const Comparison& c) {
                        {"means", {c.noise->mean, c.noise->mean_reference}},
                        {"pass", !c.noise->differs()}};
   if (!c.notes.empty()) object["notes"] = c.notes;
+  object["judged"] = !c.checks.empty();
   object["pass"] = c.pass();
   return object;
 }
@@ -125,13 +130,16 @@ std::string text_report(const std::vector<Comparison>& comparisons) {
   std::size_t passed = 0;
   for (const Comparison& c : comparisons) {
     passed += c.pass();
-    const char* verdict = c.pass() ? "pass" : c.error.empty() ? "FAIL" : "ERROR";
+    const char* verdict = !c.error.empty() ? "ERROR" : c.checks.empty() ? "-" : c.pass() ? "pass" : "FAIL";
     text += fmt::format("{:<6}{}", verdict, c.name);
     if (c.error.empty())
       text += fmt::format("  relmse {:.3g}, flip {:.3g}", c.errors.relmse, c.measures[8].value);
     const std::string why = complaint(c);
     text += (why.empty() ? "" : "  " + why) + "\n" + notes_of(c, "      note: ");
   }
+  if (std::all_of(comparisons.begin(), comparisons.end(),
+                  [](const Comparison& c) { return c.checks.empty(); }))
+    return text + not_judged;
   return text + fmt::format("{} of {} images pass\n", passed, comparisons.size());
 }
 

@@ -34,12 +34,12 @@ void note_left_out(Comparison& c, const std::filesystem::path& file, const Image
   c.notes.push_back(fmt::format("{}: not compared: {}", file.string(), fmt::join(read.left_out, ", ")));
 }
 
-Files load(Comparison& c, const DisplayFlags& flags, const std::string& layer) {
-  c.display = flags.display();
-  Files files{read_image(c.image_file, layer), read_image(c.reference_file, layer)};
+Files load(Comparison& c, const Viewing& viewing) {
+  c.display = viewing.display;
+  Files files{read_image(c.image_file, viewing.layer), read_image(c.reference_file, viewing.layer)};
   note_left_out(c, c.image_file, files.image);
   note_left_out(c, c.reference_file, files.reference);
-  encode_alike(c, files, !flags.tone.empty());
+  encode_alike(c, files, viewing.tone_is_given);
   c.encoded = files.image.encoded;
   return files;
 }
@@ -64,9 +64,16 @@ void measure_alpha(Comparison& c, const Files& files) {
 
 void measure_noise(Comparison& c, const Files& files) {
   if (!c.limits.ztest) return;
-  const bool films = is_film_format(c.image_file) && is_film_format(c.reference_file);
-  c.noise = films ? test_noise(read_film(c.image_file), read_film(c.reference_file), *c.limits.ztest)
-                  : test_noise(files.image, files.reference, *c.limits.ztest);
+  int left = 0, top = 0;  // the test tells places in the full image
+  if (is_film_format(c.image_file) && is_film_format(c.reference_file)) {
+    const Film film = read_film(c.image_file);
+    c.noise = test_noise(film, read_film(c.reference_file), *c.limits.ztest);
+    left = film.window().x0, top = film.window().y0;
+  } else {
+    c.noise = test_noise(files.image, files.reference, *c.limits.ztest);
+  }
+  if (const NoiseTest& test = *c.noise; test.differs())
+    c.worst = PixelBlock{test.x0 - left, test.y0 - top, test.x1 - left, test.y1 - top};
 }
 
 void measure(Comparison& c, const Files& files) {
@@ -93,14 +100,18 @@ void check_bound(Comparison& c, const std::string& name, double bound, bool grea
   const char* relation = greatest ? "at most" : "at least";
   c.checks.push_back({name, fmt::format("{} {:.6g}", greatest ? "<=" : ">=", bound), pass,
                       fmt::format("{} is {:.6g}, allowed {} {:.6g}", name, found->value, relation, bound)});
+  if (name == "max_error" && !pass && !c.worst)
+    c.worst = PixelBlock{c.errors.max_x, c.errors.max_y, c.errors.max_x + 1, c.errors.max_y + 1};
 }
 
 void check_noise(Comparison& c) {
   const NoiseTest& test = *c.noise;
   constexpr const char* channels[] = {"red", "green", "blue"};
-  std::string said =
-      fmt::format("noise explains the difference with p = {:.3g} ({} {}tests), allowed at least {:.3g}",
-                  test.p, test.tests, test.paired ? "paired " : "", test.alpha);
+  std::string said = fmt::format(
+      "{}: the chance that noise alone differs as much somewhere is {}{:.3g} ({} {}tests), allowed from "
+      "{:.3g} on",
+      test.differs() ? "differs" : "within the noise", test.differs() ? "below " : "", test.p, test.tests,
+      test.paired ? "paired " : "", test.alpha);
   if (test.differs())
     said += fmt::format("; most in {}, pixels {},{} to {},{}: {:.6g} against {:.6g}, {:.1f} standard errors",
                         channels[test.channel], test.x0, test.y0, test.x1 - 1, test.y1 - 1, test.mean,
@@ -135,7 +146,7 @@ bool Comparison::pass() const {
 
 Comparison compare_files(const std::string& name, const std::filesystem::path& image,
                          const std::filesystem::path& reference, const Limits& limits,
-                         const DisplayFlags& flags, const std::string& layer) {
+                         const Viewing& viewing) {
   Comparison c;
   c.name = name;
   c.image_file = image;
@@ -143,7 +154,7 @@ Comparison compare_files(const std::string& name, const std::filesystem::path& i
   c.limits = limits;
   Files files;
   try {
-    files = load(c, flags, layer);
+    files = load(c, viewing);
   } catch (const InputError& error) {
     c.error = error.what();
     return c;

@@ -9,7 +9,6 @@
 #include "castray/image.h"
 #include "castray/metrics.h"
 #include "castray/noise_test.h"
-#include "cli/display_flags.h"
 #include "cli/limits.h"
 
 namespace castray::cli {
@@ -30,6 +29,11 @@ struct Check {
   std::string said;  ///< one sentence: what was found and what is allowed
 };
 
+/// The pixels x0 <= x < x1, y0 <= y < y1 of an image.
+struct PixelBlock {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
 /// One image held against its reference.
 struct Comparison {
   std::string name;  ///< of the image within its folder
@@ -45,14 +49,22 @@ struct Comparison {
   std::vector<Measure> measures;
   std::optional<double> percent_beyond;
   std::optional<NoiseTest> noise;
+  std::optional<PixelBlock> worst;  ///< where it differs most, if it exceeds --ztest or --max max_error
   std::vector<Check> checks;
 
   bool pass() const;  ///< compared, and all checks pass
 };
 
-/// Compares. What cannot be compared is told in `error`. `layer`: as of `read_image`.
+/// How files are read and shown.
+struct Viewing {
+  Display display;
+  bool tone_is_given = false;  ///< else encoded files are not held against radiance
+  std::string layer;           ///< as of `read_image`
+};
+
+/// Compares. What cannot be compared is told in `error`.
 Comparison compare_files(const std::string& name, const std::filesystem::path& image,
                          const std::filesystem::path& reference, const Limits& limits,
-                         const DisplayFlags& flags, const std::string& layer = "");
+                         const Viewing& viewing);
 
 }  // namespace castray::cli

@@ -12,7 +12,8 @@ namespace castray::cli {
 void DisplayFlags::add_to(Arguments& arguments) {
   arguments.add("--exposure", exposure, "STOPS", "multiply by 2^STOPS before encoding");
   arguments.add("--tone", tone, "CURVE",
-                "curve of encoded pictures: srgb (default), linear, or gamma:G for value^G");
+                "curve of encoded pictures: srgb (default), linear, or gamma:G for value^G, which brightens "
+                "where G < 1");
 }
 
 void DisplayFlags::add_bits_to(Arguments& arguments) { arguments.add("--bits", bits, "auto|16", bits_help); }
@@ -21,9 +22,19 @@ bool parse_bits(const std::string& flag, const std::string& text) {
   return parse_choice<bool>(flag, text, {{"auto", false}, {"16", true}});
 }
 
+ToneCurve parse_tone(const std::string& text) {
+  const ToneCurve tone = parse_tone_curve(text);
+  if (tone.kind == ToneCurve::Kind::gamma && tone.exponent > 1)
+    fmt::print(stderr,
+               "castray: warning: --tone {}: value^{:g} darkens; a display of gamma {:g} is served by "
+               "gamma:{:.4g}\n",
+               text, tone.exponent, tone.exponent, 1 / tone.exponent);
+  return tone;
+}
+
 Display DisplayFlags::display() const {
   if (!(std::abs(exposure) <= 100)) throw InputError("--exposure: give stops between -100 and 100");
-  return {tone.empty() ? ToneCurve{} : parse_tone_curve(tone), exposure, parse_bits("bits", bits)};
+  return {tone.empty() ? ToneCurve{} : parse_tone(tone), exposure, parse_bits("bits", bits)};
 }
 
 void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files) {

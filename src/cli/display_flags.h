@@ -23,6 +23,9 @@ struct DisplayFlags {
   Display display() const;
 };
 
+/// The value of --tone; says on stderr where it darkens.
+ToneCurve parse_tone(const std::string& text);
+
 /// The value of --bits: whether files hold 16 bits a value.
 bool parse_bits(const std::string& flag, const std::string& text);
 inline constexpr const char* bits_help =

@@ -1,5 +1,9 @@
 #include "cli/image_folder.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "castray/error.h"
 #include "castray/image.h"
 
@@ -15,6 +19,15 @@ std::set<std::string> images_below(const std::filesystem::path& folder) {
   if (error) throw InputError({folder.string()}, "cannot be read: " + error.message());
   if (names.empty()) throw InputError({folder.string()}, "holds no images");
   return names;
+}
+
+std::string size_text(const std::filesystem::path& folder) {
+  const std::set<std::string> names = images_below(folder);
+  double bytes = 0;
+  for (const std::string& name : names)
+    bytes += static_cast<double>(std::filesystem::file_size(folder / name));
+  return fmt::format("{} image{}, {:.2g} MB", names.size(), names.size() == 1 ? "" : "s",
+                     std::max(bytes, 1e4) / 1e6);
 }
 
 }  // namespace castray::cli

@@ -1,6 +1,9 @@
 #include <fmt/core.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
@@ -15,7 +18,10 @@ int main(int argc, char** argv) {
   };
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails as on a full disk
   try {
-    return castray::cli::parse_command_line(argc, argv)();
+    const int code = castray::cli::parse_command_line(argc, argv)();
+    if (std::fflush(stdout) != 0)
+      return fail(("standard output: cannot be written: " + std::string(std::strerror(errno))).c_str());
+    return code;
   } catch (const std::bad_alloc&) {
     return fail("out of memory; a smaller image or scene is needed");
   } catch (const std::exception& error) {

@@ -130,6 +130,7 @@ int render_scene(const RenderCommand& command) {
   check(request);
   apply_flags(request, scene);
   RenderReport report{scene, request.options, command.given};
+  report.tells_time = request.metadata_time;
   report.load_seconds = seconds_since(begin);
   if (!request.quiet) report.print_scene(request.verbose);
 

@@ -222,9 +222,15 @@ const RenderFlag flags[] = {
     {"exposure", "STOPS", "of .ppm and .png [0]", output,
      [](Request r, Text f, Text t) { r.display.exposure = parse_number(f, t); }},
     {"tone", "srgb|linear|gamma:G", "curve of .ppm and .png; gamma:G is value^G [srgb]", output,
-     [](Request r, Text, Text t) { r.display.tone = parse_tone_curve(t); }},
+     [](Request r, Text, Text t) { r.display.tone = parse_tone(t); }},
     {"bits", "auto|16", bits_help, output,
      [](Request r, Text f, Text t) { r.display.bits16 = parse_bits(f, t); }, false},
+    {"metadata", "plain|time", "time: PNG and EXR files tell how long they took, so no two are equal [plain]",
+     output,
+     [](Request r, Text f, Text t) {
+       r.metadata_time = parse_choice<bool>(f, t, {{"plain", false}, {"time", true}});
+     },
+     false},
     {"progress", "auto|bar|lines|off", "on stderr [auto: a bar on a terminal, else lines]", output,
      [](Request r, Text f, Text t) {
        r.progress = parse_choice<ProgressMode>(f, t,

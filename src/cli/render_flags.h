@@ -35,6 +35,7 @@ struct RenderRequest {
   SceneFlags scene;
   Fault fault = Fault::none;
   Display display;
+  bool metadata_time = false;  ///< images say how long they took
   std::vector<std::filesystem::path> outputs;
   std::optional<std::filesystem::path> checkpoint, stats;
   double checkpoint_seconds = 60;

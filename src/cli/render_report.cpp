@@ -170,7 +170,7 @@ Metadata RenderReport::metadata() const {
   metadata["castray:version"] = CASTRAY_VERSION;
   metadata["castray:scene"] = scene.name;
   metadata["castray:spp"] = std::to_string(spp());
-  metadata["castray:seconds"] = fmt::format("{:.3f}", result.stats.render_seconds);
+  if (tells_time) metadata["castray:seconds"] = fmt::format("{:.3f}", result.stats.render_seconds);
   return metadata;
 }
 

@@ -21,6 +21,7 @@ struct RenderReport {
   const Scene& scene;
   const RenderOptions& options;
   const std::vector<GivenFlag>& given;
+  bool tells_time = false;  ///< images say how long they took
   double load_seconds = 0, total_seconds = 0;
   RenderResult result{};
 

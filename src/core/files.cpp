@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <sstream>
@@ -122,6 +123,12 @@ void write_special(const fs::path& file, const fs::path& target,
   write_stream(file, out, write);
 }
 
+void write_standard_output(const fs::path& file, const std::string& bytes) {
+  errno = 0;
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
+    fail(file, "cannot be written: " + reason(errno));
+}
+
 }  // namespace
 
 std::string suffix_of(const fs::path& file) {
@@ -150,7 +157,14 @@ std::string read_file(const fs::path& file) {
   return bytes;
 }
 
+bool is_standard_output(const fs::path& file) {
+  const std::string name = file.string();
+  return name == "-" || name == "/dev/stdout" ||
+         (name.ends_with(":-") && name.find('/') == std::string::npos);
+}
+
 void check_writable(const fs::path& file) {
+  if (is_standard_output(file)) return;
   if (file.empty()) throw InputError("an output file's name is empty; give a path");
   const fs::path target = link_target(file), folder = folder_of(target);
   std::error_code ignored;
@@ -169,6 +183,11 @@ void check_writable(const fs::path& file) {
 }
 
 void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
+  if (is_standard_output(file)) {
+    std::ostringstream bytes;  // a pipe cannot be sought in
+    write(bytes);
+    return write_standard_output(file, std::move(bytes).str());
+  }
   check_writable(file);
   const fs::path target = link_target(file);
   if (is_special(target)) return write_special(file, target, write);

@@ -14,10 +14,13 @@ std::string suffix_of(const std::filesystem::path& file);
 /// All bytes of a file. Throws InputError that says why it cannot be read.
 std::string read_file(const std::filesystem::path& file);
 
+/// Whether a file's name stands for the standard output: "-", "/dev/stdout", or "FORMAT:-", as in "exr:-".
+bool is_standard_output(const std::filesystem::path& file);
+
 /// Writes what `write` puts into the stream to a temporary file beside `file`, waits until it is on the
 /// disk, then renames it, so that `file` is at any time the old one or the new one. A symbolic link is
-/// followed; what is not a regular file (a device, a pipe) is written to directly. Throws InputError, with
-/// `file` untouched and no temporary file left, if anything fails or `write` throws.
+/// followed; what is not a regular file (a device, a pipe, the standard output) is written to directly.
+/// Throws InputError, with `file` untouched and no temporary file left, if anything fails or `write` throws.
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 

@@ -85,9 +85,16 @@ constexpr Format formats[] = {
 bool is_film(const Format& format) { return !format.read; }
 bool is_written(const Format& format) { return format.write || is_film(format); }
 
+/// That of the format: of the standard output that which its name begins with ("exr:-"), else .png.
+std::string format_suffix(const std::filesystem::path& file) {
+  if (!is_standard_output(file)) return suffix_of(file);
+  const std::string name = file.string();
+  return name.ends_with(":-") ? "." + name.substr(0, name.size() - 2) : ".png";
+}
+
 /// Null where the suffix is unknown.
 const Format* find_format(const std::filesystem::path& file) {
-  const std::string suffix = suffix_of(file);
+  const std::string suffix = format_suffix(file);
   const auto* found = std::find_if(std::begin(formats), std::end(formats),
                                    [&](const Format& f) { return suffix == f.suffix; });
   return found == std::end(formats) ? nullptr : found;
@@ -103,7 +110,7 @@ std::string suffixes(Included included) {
 
 const Format& format_of(const std::filesystem::path& file) {
   if (const Format* format = find_format(file)) return *format;
-  const std::string suffix = file.extension().string();
+  const std::string suffix = format_suffix(file);
   throw InputError({file.string()},
                    (suffix.empty() ? "has no suffix" : "unknown image format '" + suffix + "'") +
                        "; known are " + suffixes([](const Format&) { return true; }));
@@ -120,7 +127,7 @@ const Format& format_of(const std::filesystem::path& file, std::string_view byte
 const Format& writable_format_of(const std::filesystem::path& file) {
   const Format* format = find_format(file);
   if (format && is_written(*format)) return *format;
-  const std::string suffix = file.extension().string();
+  const std::string suffix = format_suffix(file);
   throw InputError({file.string()}, (suffix.empty() ? "has no suffix"
                                      : format       ? "images of '" + suffix + "' are read only"
                                                     : "unknown image format '" + suffix + "'") +

@@ -85,7 +85,7 @@ TEST_CASE("what cannot be compared, converted or merged is one line and exit cod
       {{"compare", "small.pfm", "a.pfm"}, "the image is 8x8, the reference 12x8"},
       {{"compare", "nan.pfm", "a.pfm"}, "pixel (7,2) of the image is not finite"},
       {{"compare", "a.png", "nan.pfm", "--tone", "srgb"}, "pixel (7,2) of the reference is not finite"},
-      {{"compare", "absent.pfm", "a.pfm"}, "absent.pfm: cannot be read: No such file"},
+      {{"compare", "absent.pfm", "a.pfm"}, "absent.pfm: does not exist"},
       {{"compare", ".", "a.pfm"}, "is a folder"},
       {{"compare", "a.pfm"}, "REFERENCE"},
       {{"compare", "a.pfm", "b.pfm", "--max", "mze=1"}, "did you mean 'mse'"},

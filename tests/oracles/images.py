@@ -91,7 +91,7 @@ def check_metadata(found):
 
 def check_written(castray, folder):
     render = [castray, "render", ROOT / "scenes" / "cornell_box.json", "-q", "--size", "37x23", "--spp", "16", "--seed",
-              "5", "--replicates", "4"]
+              "5", "--replicates", "4", "--metadata", "time"]
     outputs = [x for name in ["a.ppm", "a.png", "a.pfm", "a.hdr", "a.exr", "a.film"] for x in ["-o", name]]
     subprocess.run([*render, *outputs], cwd=folder, check=True)
     subprocess.run([castray, "convert", "a.film", "--bits", "16", "-o", "b.ppm", "-o", "b.png", "-o", "b.exr"], cwd=folder,

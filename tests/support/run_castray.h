@@ -33,6 +33,7 @@ struct RunSettings {
   std::filesystem::path folder{};                                ///< to run in
   std::vector<std::pair<std::string, std::string>> variables{};  ///< environment
   std::string input_file = "/dev/null";
+  std::string output_file{};            ///< in place of RunResult::out
   unsigned seconds = 120;               ///< ends it with SIGALRM
   int signal = 0;                       ///< sent once it has written to stderr
   rlim_t largest_file = RLIM_INFINITY;  ///< in bytes
@@ -46,7 +47,8 @@ inline std::string file_content(const std::filesystem::path& file) {
 /// Runs the built program and waits for its end.
 inline RunResult run_castray(const std::vector<std::string>& arguments, const RunSettings& settings = {}) {
   const TemporaryFolder capture;
-  const std::string out = capture / "out", err = capture / "err";
+  const std::string out = settings.output_file.empty() ? std::string(capture / "out") : settings.output_file;
+  const std::string err = capture / "err";
   std::vector<char*> argv{const_cast<char*>(CASTRAY_PROGRAM)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -77,8 +79,8 @@ inline RunResult run_castray(const std::vector<std::string>& arguments, const Ru
   int status = 0;
   rusage usage{};
   wait4(child, &status, 0, &usage);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), file_content(out),
-          file_content(err), usage.ru_maxrss};
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+          settings.output_file.empty() ? file_content(out) : "", file_content(err), usage.ru_maxrss};
 }
 
 /// The same, in `folder`.
