@@ -5,8 +5,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The triangles whose pyramid from y meets the box (shaft culling: Haines and Wallace 1991); false if there
-/// are too many for the budget.
+/// The triangles whose pyramids from y meet the box (shaft culling: Haines and Wallace 1991). False if
+/// they exceed the budget.
 bool triangle_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out);
 
 }  // namespace castray::CASTRAY_ISA

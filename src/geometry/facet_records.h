@@ -20,7 +20,7 @@ struct Facet {
 };
 inline constexpr int facet_floats = sizeof(Facet) / sizeof(float);
 
-/// The closest hit of one ray by a test that does not err at edges; facet 0xffffffff is a miss.
+/// Closest hit by an exact test, for rays near edges; facet 0xffffffff is a miss.
 struct ExactFacets {
   const void* of;
   void (*closest)(const void* of, const float origin[3], const float direction[3], float& t, uint32_t& facet);
@@ -41,8 +41,8 @@ struct BlockerList {
   uint32_t count, padded;
 };
 
-/// Bound of the distance by which rounding moves a ray of unit direction that starts in the scene past a
-/// facet's edge, and of the product of that and a segment's length.
+/// Bounds of rounding in ray/facet tests: how far a ray of unit direction that starts in the scene may
+/// pass a facet's edge and still hit; and for segments, that times the segment's length.
 inline constexpr float list_slack = 0x1p-20f, segment_slack = 4 * list_slack;
 
 }  // namespace castray

@@ -5,7 +5,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The blockers whose pyramid from y meets the box.
+/// The blockers whose pyramids from y meet the box.
 void facet_shaft(const BlockerList& blockers, const Vec& y, const Box& box, Shaft& out);
 
 }  // namespace castray::CASTRAY_ISA

@@ -36,7 +36,7 @@ struct TriangleTree {
   TriangleTable triangles;
 };
 
-/// One of them is filled in.
+/// A scene is held as one of the two.
 struct SceneGeometry {
   FlatList list;
   TriangleTree tree;

@@ -4,8 +4,8 @@
 #include "geometry/wide_bvh_view.h"
 #include "simd/vec_lanes.h"
 
-// Visibility of one point to all points of a box at once: the hull of the two is a shaft, and most shafts are
-// empty.
+// Visibility between one point and all points of a box at once: what may block is in the shaft, the hull
+// of both. Most shafts are empty.
 
 namespace castray::CASTRAY_ISA {
 
@@ -15,8 +15,8 @@ struct Box {
 
 inline constexpr int max_blockers = 384;
 
-/// What may lie between a point y and a box: pyramids with apex y over a facet of three or four corners. A
-/// point y + d is hidden by pyramid i if d is inside its side planes, edge . d >= -margin, and beyond its
+/// Possible blockers between a point y and a box, as pyramids with apex y over facets of three or four
+/// corners. Pyramid i hides y + d if d is inside its side planes, edge . d >= -margin, and behind its
 /// base, normal . d > base.
 struct Shaft {
   int count = 0;
@@ -24,8 +24,9 @@ struct Shaft {
   alignas(64) float normal[3][max_blockers + 16], base[max_blockers + 16];
 };
 
-/// How many packets of triangles, and four times as many nodes, may lie in a shaft before a ray for each
-/// point of the box is cheaper. Where that was too few, the next shafts to the same box are given up sooner.
+/// How many packets of triangles, and four times as many nodes, a shaft may hold before a ray for each
+/// point of the box is cheaper. A shaft that exceeds it lowers the budget of the next shafts to the same
+/// box.
 struct ShaftBudget {
   static constexpr int most = max_blockers / packet_size, least = 3;
   int packets = most;
@@ -37,7 +38,7 @@ struct ShaftBudget {
   }
 };
 
-/// The greatest a . (x - y) over the box, with y at distance `center` from its middle.
+/// Maximum of a . (x - y) over the box; `center` is the box's centre relative to y.
 CASTRAY_INLINE Float support(Vec a, Vec center, Vec half) {
   return dot(a, center) + fma(abs(a.x), half.x, fma(abs(a.y), half.y, abs(a.z) * half.z));
 }
@@ -52,7 +53,7 @@ CASTRAY_INLINE Mask meets_box(const Vec (&edge)[corners], const Float (&margin)[
   return meets;
 }
 
-/// The numbers of the pyramids, in lanes, that meet a box around y + center; returns how many.
+/// Numbers of the pyramids that meet a box around y + center, to `out`; returns how many.
 template <int corners>
 CASTRAY_INLINE int pyramids_of_part(const Shaft& s, const Vec& center, const Vec& half, uint32_t* out) {
   int n = 0;

@@ -6,7 +6,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Geometry as a tree of triangles. For what the members mean see ListGeometry.
+/// Geometry as a tree of triangles; see ListGeometry for the members.
 class TreeGeometry {
  public:
   static constexpr int blocker_corners = 3;
@@ -24,7 +24,7 @@ class TreeGeometry {
     return triangle_point(tree_.triangles, hit);
   }
 
-  /// Offset further by the error of a test from so far.
+  /// p, offset further by the error of a ray/triangle test over this distance.
   CASTRAY_INLINE Vec far_end(const Vec& p, const Vec& normal, const Vec& from) const {
     return fma(normal, error_of_test(max_component(magnitude(p - from)), normal), p);
   }

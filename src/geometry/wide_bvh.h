@@ -7,9 +7,9 @@
 
 namespace castray {
 
-/// A bounding volume hierarchy with eight children a node and packets of eight triangles, for the kernels.
-/// Holds the triangles' vertices itself: the mesh is not needed any more. Gives the answers of TriangleList,
-/// bit for bit.
+/// A bounding volume hierarchy with eight children a node and packets of eight triangles, for the
+/// kernels. It holds the triangles' vertices itself and does not refer to the mesh. Its answers are those
+/// of TriangleList, bit for bit.
 class WideBvh {
  public:
   /// The hierarchy does not depend on `threads`. `best` cuts the boxes of wasteful triangles first, whatever

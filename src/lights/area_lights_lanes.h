@@ -35,7 +35,7 @@ CASTRAY_INLINE Light light_of(const LightList& list, Uint light) {
           integer(&L::source)};
 }
 
-/// A point on the chosen light, uniform in area or, where that can be had and is asked for, in solid angle.
+/// A point on the chosen light, uniform in area or, where asked for and possible, in solid angle.
 CASTRAY_INLINE LightPoint sample_area_light(const LightList& list, const LightChoice& chosen,
                                             const Receiver& receiver, Float u, Float v) {
   const Light light = light_of(list, chosen.light);

@@ -8,8 +8,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Where light is to arrive: within `radius` of p, and where one-sided, on the side of some unit normal whose
-/// angle to `normal` has at least this cosine and at most this sine.
+/// What a light is chosen for: points within `radius` of p. If one_sided, light arrives on the side of
+/// normals whose angle to `normal` has at least this cosine and at most this sine.
 struct Receiver {
   Vec p, normal;
   Float radius, cos_spread, sin_spread;
@@ -19,7 +19,7 @@ CASTRAY_INLINE Receiver receiving_point(Vec p, Vec normal, Mask one_sided) {
   return {p, normal, Float(0.f), Float(1.f), Float(0.f), one_sided};
 }
 
-/// A chosen light: its number, and the probability of that; 0 if no light can reach the receiver.
+/// A chosen light's number, and its probability; 0 if no light reaches the receiver.
 struct LightChoice {
   Uint light;
   Float probability;
@@ -63,13 +63,13 @@ CASTRAY_INLINE Float importance(const Bounds& b, const Receiver& r) {
   return b.power * leaving * arriving * inverse * inverse;
 }
 
-/// Something chosen: what it is, with which probability, and a number in [0,1) to choose by what is in it.
+/// A chosen node or light, its probability, and a number in [0,1) for the choice within it.
 struct Choice {
   Uint next;
   Float probability, u;
 };
 
-/// One node of the cut, looking at every one.
+/// Chooses a node of the cut, by the importance of every node.
 CASTRAY_INLINE Choice choose_in_cut(const LightList& list, Float u, const Receiver& r) {
   Float upto[most_light_cut];
   Float sum(0.f);
@@ -89,8 +89,8 @@ CASTRAY_INLINE Choice choose_in_cut(const LightList& list, Float u, const Receiv
           select(any_light, (at - before) / chosen, Float(0.f))};
 }
 
-/// A light: a node of the cut, then a descent by chance below it. `deep_u` serves below the levels that use u
-/// up.
+/// Chooses a light: a node of the cut, then a random descent below it. `deep_u` replaces u at the level
+/// where its digits are used up.
 CASTRAY_INLINE LightChoice choose_by_importance(const LightList& list, Float u, Float deep_u,
                                                 const Receiver& r) {
   constexpr int levels_of_u = 6;
@@ -114,7 +114,7 @@ CASTRAY_INLINE LightChoice choose_by_importance(const LightList& list, Float u, 
   return {c.next & ~light_leaf, c.probability};
 }
 
-/// The light whose stretch of the cumulative probabilities holds u.
+/// Inverts the cumulative probabilities at u.
 CASTRAY_INLINE Uint choose_by_power(const LightList& list, Float u) {
   Uint low(0u);
   for (uint32_t step = list.count > 1 ? 1u << (31 - __builtin_clz(list.count - 1)) : 0u; step; step >>= 1) {
@@ -127,7 +127,7 @@ CASTRAY_INLINE Uint choose_by_power(const LightList& list, Float u) {
   return low;
 }
 
-/// One of the lights, for the receiver. Of u, `deep` serves where u's digits do not suffice.
+/// Chooses a light for the receiver. `deep` replaces u where its digits are used up.
 CASTRAY_INLINE LightChoice choose_light(const LightList& list, Float u, Float deep,
                                         const Receiver& receiver) {
   if (list.cut_count > 0) return choose_by_importance(list, u, deep, receiver);

@@ -5,9 +5,9 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// A light sample. Its densities are per area of the light; those of a point at infinity per solid angle.
+/// A light sample. Pdfs are per area of the light; for a point at infinity per solid angle.
 struct LightPoint {
-  Vec p;  ///< of a point at infinity: the unit direction to it
+  Vec p;  ///< for a point at infinity: the unit direction to it
   Vec normal;
   Vec weight;     ///< emitted radiance over the pdf of the sample
   Float density;  ///< pdf that MIS weights take for it: power-proportional, even where importance chose the

@@ -17,16 +17,17 @@ struct KernelLight {
   uint32_t material;  ///< its number
   uint32_t source;    ///< the scene's triangle, if it is one: its corners are origin, + edge1, + edge2
   uint32_t two_sided;
-  float error;         ///< bound of the distance of a computed point from the exact light
-  float density;       ///< of a point on it by light sampling, per area; what shares between techniques use
-  float probability;   ///< of choosing this light by power
-  float cumulative;    ///< of the lights before this one
+  float error;    ///< bound of the distance of a computed point from the exact light
+  float density;  ///< area pdf of power-proportional sampling; used for MIS even when importance chose the
+                  ///< light
+  float probability;   ///< of this light, chosen by power
+  float cumulative;    ///< sum of the probabilities before this one
   uint32_t rectangle;  ///< 1: its edges are perpendicular
 };
 inline constexpr int light_floats = sizeof(KernelLight) / sizeof(float);
 
-/// Bounds of lights: a sphere; a cone that holds the normals of emitting sides, by the cosine and sine of its
-/// half angle, 0 and 1 where that is above 90 degrees; and their power.
+/// Bounds of lights: a bounding sphere; a cone around the normals of their emitting sides, as cosine and
+/// sine of its half angle (0 and 1 above 90 degrees); and their power.
 struct LightBounds {
   float center[3], radius;
   float axis[3], cos_spread;
@@ -36,7 +37,7 @@ struct LightBounds {
 };
 inline constexpr uint32_t light_leaf = 0x80000000u;
 
-/// Nodes of a tree that are looked at one by one, before a descent below the chosen one.
+/// Most nodes of the cut, whose importances are all computed before the descent.
 inline constexpr int most_light_cut = 32;
 
 struct MaterialTables;
@@ -46,12 +47,13 @@ struct TriangleTable;
 struct LightList {
   const KernelLight* lights;
   uint32_t count;
-  uint32_t cut_count;               ///< 0: lights are chosen by power, not by what they may bring to a point
-  const LightBounds* cut;           ///< nodes that hold all lights, each once
-  const LightBounds* tree;          ///< pairs of siblings
-  float environment[3];             ///< radiance from every direction that hits nothing
-  bool by_solid_angle;              ///< points are uniform in solid angle where that can be had
-  bool may_be_covered;              ///< something may lie too close in front of one to be seen from afar
+  uint32_t cut_count;       ///< 0: lights are chosen by power, not by importance
+  const LightBounds* cut;   ///< nodes of the tree that together hold every light once
+  const LightBounds* tree;  ///< pairs of siblings
+  float environment[3];     ///< radiance from every direction that hits nothing
+  bool by_solid_angle;      ///< sample rectangles uniformly in solid angle
+  bool may_be_covered;  ///< a surface may lie so close in front of a light that segments must start at the
+                        ///< light
   const MaterialTables* materials;  ///< where an image says what some light emits; else null
   const TriangleTable* triangles;   ///< likewise
 };

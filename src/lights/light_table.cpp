@@ -9,8 +9,8 @@ namespace castray {
 
 namespace {
 
-/// A light's place along a Morton curve through [-1,1]^3, so that a stratified choice among lights is
-/// stratified in space.
+/// Position of a light along a Morton curve through [-1,1]^3: stratified choices among lights in this
+/// order are stratified in space.
 std::uint64_t place_on_curve(const KernelLight& l) {
   std::uint64_t place = 0;
   for (int c = 0; c < 3; ++c) {
@@ -25,8 +25,7 @@ double radiance_of(const KernelLight& l) {
   return luminance(Vec3d(l.emission[0], l.emission[1], l.emission[2])) * (l.two_sided ? 2 : 1);
 }
 
-/// Lights in an order that keeps neighbours together, with their probabilities by power. Returns the total
-/// power / pi.
+/// Sorts lights along the curve and sets their probabilities by power. Returns the total power over pi.
 double sort_and_weigh(std::vector<KernelLight>& lights) {
   std::stable_sort(lights.begin(), lights.end(),
                    [](auto& a, auto& b) { return place_on_curve(a) < place_on_curve(b); });

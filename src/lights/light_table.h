@@ -14,15 +14,14 @@ class LightTable {
  public:
   LightTable() = default;
 
-  /// `facets` hold the scene's emitting triangles. `by_importance`: lights are chosen by what they may bring
-  /// to a point, instead of by power.
+  /// `facets` include all emitting triangles. `by_importance`: choose lights by importance for the
+  /// receiver, not by power.
   LightTable(const Scene& scene, const std::vector<Facet>& facets, bool by_importance, int threads);
 
   /// Points into this. What is not of area lights is left 0.
   LightList list() const;
 
-  /// Pdf, per area, of a point on a surface of `material`, which emits `mean_emission` on the mean, by light
-  /// sampling that chooses by power.
+  /// Area pdf of points on `material`, whose emission has this mean, under power-proportional light sampling.
   float density(const Material& material, const Vec3d& mean_emission) const;
 
  private:

@@ -3,24 +3,23 @@
 #include "lights/area_lights_lanes.h"
 #include "materials/kernel_material.h"
 
-// All that the stages know of lights: sample one, weigh one that a ray has found, see what a ray that leaves
-// the scene finds.
+// The three things that stages ask of lights: sample a light, weigh a light that a ray hit, and light from
+// outside.
 
 namespace castray::CASTRAY_ISA {
 
-/// A light sample for the receiver. `choice` and `deep` choose the light, u and v the point on it; `deep`
-/// serves where the digits of `choice` do not suffice.
+/// A light sample. `choice` and `deep` choose the light, u and v the point on it; see choose_light.
 CASTRAY_INLINE LightPoint sample_light(const LightList& list, const Receiver& receiver, Float choice,
                                        Float deep, Float u, Float v) {
   return sample_area_light(list, choose_light(list, choice, deep, receiver), receiver, u, v);
 }
 
-/// A surface that a ray has found, as a light.
+/// A surface that a ray hit, as a light.
 struct FoundLight {
   Mask shines;      ///< it emits to the side that the ray comes from
   Mask both_sides;  ///< and to the other
-  Vec emission;     ///< its material's own, before any image
-  Float density;    ///< pdf of the point by light sampling, per area, as MIS weights take it
+  Vec emission;     ///< of its material, before images
+  Float density;    ///< area pdf of the point under light sampling, for MIS
 };
 CASTRAY_INLINE FoundLight found_light(const KernelMaterial* materials, Uint material, Mask front) {
   const Mask both_sides =
@@ -30,7 +29,7 @@ CASTRAY_INLINE FoundLight found_light(const KernelMaterial* materials, Uint mate
           gather(materials, &KernelMaterial::light_density, material)};
 }
 
-/// What a ray finds that leaves the scene in direction d.
+/// Light from outside the scene, from direction d.
 struct EscapedLight {
   Vec radiance;
   Float density;  ///< pdf of the direction by light sampling, per solid angle; 0: it is found by such rays

@@ -2,15 +2,15 @@
 
 #include "simd/lanes.h"
 
-// A struct of arrays of `size` values of 32 bits each, and of nothing else, is a table whose rows are the
-// arrays. An entry, one value of every row, can be copied without naming the arrays.
+// A struct that holds nothing but arrays of `size` 32-bit values is a table with these arrays as rows. Its
+// entries (columns) can be copied without naming the arrays.
 
 namespace castray::CASTRAY_ISA {
 
 template <class Arrays>
 inline constexpr int rows_of = sizeof(Arrays) / (Arrays::size * sizeof(uint32_t));
 
-/// Copies those of the entries i to i + width - 1 of `from` that are in `m` to the entries of `to` from n on.
+/// Copies entries i to i + width - 1 of `from`, those in `m`, to the entries of `to` from n on.
 template <class Arrays>
 CASTRAY_INLINE void compress_entries(Arrays& to, int n, Mask m, const Arrays& from, int i) {
   for (int row = 0; row < rows_of<Arrays>; ++row)

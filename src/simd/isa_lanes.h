@@ -19,7 +19,7 @@
 #define CASTRAY_WIDTH 1
 #endif
 
-/// Of what works on a few lane vectors.
+/// For functions of a few lane vectors.
 #define CASTRAY_INLINE inline __attribute__((always_inline))
-/// Of templates that work on a whole wave or tile: compiled once a kernel, however often it calls them.
+/// For templates that work on a whole wave or tile: one copy a kernel, however many callers.
 #define CASTRAY_STAGE __attribute__((noinline))

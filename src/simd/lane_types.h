@@ -20,7 +20,8 @@ struct Float {
   RawFloat v;
   Float() = default;
   CASTRAY_INLINE Float(RawFloat raw) : v(raw) {}
-  CASTRAY_INLINE Float(float s) : v(s - RawFloat{}) {}  // 0 + s would cost an addition: it is not -0 for -0
+  CASTRAY_INLINE Float(float s)
+      : v(s - RawFloat{}) {}  // a plain broadcast; 0 + s is an addition, as 0 + -0 is 0
 };
 
 /// `width` unsigned 32-bit integers.

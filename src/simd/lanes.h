@@ -37,9 +37,9 @@ CASTRAY_INLINE Float copy_sign(Float a, Float sign) {
 CASTRAY_INLINE float lane(Float a, int l) { return a.v[l]; }
 CASTRAY_INLINE uint32_t lane(Uint a, int l) { return a.v[l]; }
 
-/// Where the fields of a table's records begin: the table's address and a distance, which may be indexed past
-/// the first record. The address of the first record's own field may not: the compiler takes it that the
-/// index stays inside.
+/// Address of a field in a table of records, to be indexed over all records. It is computed from the
+/// table: indexing from the first record's field past that field is undefined, and compilers make use of
+/// that.
 template <class Record, class Field>
 CASTRAY_INLINE const Field* fields_of(const Record* table, Field Record::*field) {
   return (const Field*)((const char*)table + ((const char*)&(table->*field) - (const char*)table));

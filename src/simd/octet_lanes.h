@@ -16,9 +16,7 @@ using I8 = int32_t __attribute__((vector_size(32)));
 using U8 = uint32_t __attribute__((vector_size(32)));
 
 CASTRAY_INLINE F8 load8(const float* p) { return *(const F8*)p; }
-CASTRAY_INLINE F8 splat8(float s) {
-  return s - F8{};
-}  // 0 + s would have to be computed, as it is not -0 for -0
+CASTRAY_INLINE F8 splat8(float s) { return s - F8{}; }  // a plain broadcast, see Float
 
 /// Of two NaN or equal operands the second, as the instructions do.
 CASTRAY_INLINE F8 min8(F8 a, F8 b) {
@@ -91,7 +89,7 @@ CASTRAY_INLINE __m256i packing8(uint32_t mask) {
   return _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)_pext_u64(0x0706050403020100ull, spread)));
 }
 
-/// Stores the lanes set in `mask`, one after the other, and rubbish after them; returns how many.
+/// Stores the lanes in `mask` one after the other, then garbage; returns their number.
 CASTRAY_INLINE uint32_t store_packed8(__m256 t, __m256i child, uint32_t mask, float* out_t,
                                       uint32_t* out_child) {
 #ifdef __AVX512VL__

@@ -6,14 +6,14 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Where the pixels of the job lie. Tiles of the first samples have ragged edges, as sharing over straight
-/// ones would show.
+/// Places the pixels of a job. In the first samples tiles have ragged edges: straight edges between tiles
+/// that share paths would be visible.
 void place_pixels(const Context& c, TileResult& pixels);
 
 /// One ray for each pixel of the job, slot = its number.
 void camera_rays(const Context& c, const TileResult& pixels, Paths& paths);
 
-/// Without jitter all samples of a pixel start with the same ray: the table keeps its hit.
+/// Without jitter all samples of a pixel have the same camera ray. The table keeps its hit.
 void keep_first_hits(const FirstHits& table, const TileResult& pixels, int count, const Hits& hits);
 void recall_first_hits(const FirstHits& table, const TileResult& pixels, int count, Hits& hits);
 

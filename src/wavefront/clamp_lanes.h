@@ -8,14 +8,15 @@ CASTRAY_INLINE bool clamps_indirect(const KernelOptions& options) {
   return options.most_indirect < __builtin_inff();
 }
 
-/// What the tile's light points and suffixes have brought to pixels i to i + width - 1.
+/// Radiance that pixels i to i + width - 1 have gathered from the light points and suffixes of their
+/// tile.
 template <uint32_t features>
 CASTRAY_INLINE Vec reflected(const Scratch& s, int i) {
   const Vec sum = load(s.gathered.sum, i);
   return (features & feature_materials) ? sum : sum * load_kd(s.camera.parameters, i);
 }
 
-/// Keeps the radiance so far, and what is gathered so far, as the direct part of each sample.
+/// Record the direct part of each sample: its radiance up to here, and what it has gathered up to here.
 CASTRAY_INLINE void keep_direct(const Context& c, Scratch& s) {
   if (!clamps_indirect(c.options)) return;
   for (int i = 0; i < c.job.tiles * tile_pixels; i += width) store(s.direct, i, load(s.radiance, i));
@@ -28,7 +29,7 @@ CASTRAY_INLINE void add_gathered_to_direct(const Context& c, Scratch& s) {
     store(s.direct, i, load(s.direct, i) + reflected<features>(s, i));
 }
 
-/// Scales the rest of each sample down to the greatest component that it may have.
+/// Scales the indirect part of each sample down until no component exceeds most_indirect.
 CASTRAY_INLINE void clamp_indirect(const Context& c, Scratch& s) {
   if (!clamps_indirect(c.options)) return;
   const Float most(c.options.most_indirect);

@@ -4,7 +4,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The scene, what is asked, and the running count of rays, as all stages get them.
+/// What every stage gets: scene, options, job, and the count of rays traced.
 struct Context {
   const KernelScene& scene;
   const KernelOptions& options;

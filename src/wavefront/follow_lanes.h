@@ -14,14 +14,15 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// A suffix serves many pixels, so it is worth following further.
+/// Roulette starts later for suffixes: each serves many pixels.
 inline constexpr uint32_t first_roulette_of_suffixes = 4;
 
 CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges) {
   return options.max_depth == 0 || edges <= options.max_depth;
 }
 
-/// Lights the vertices, which are number `vertex` of their paths, and follows the paths to their ends.
+/// Follows paths from their vertices, which are number `vertex` of each path, to the end: a light sample
+/// at each vertex, then the next ray.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
   const bool may_find_lights = c.options.mis || (features & feature_materials);

@@ -6,7 +6,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The pixels of a tile that one suffix stands for.
+/// Pixels of a tile per suffix.
 CASTRAY_INLINE float stratum_of(const KernelOptions& options) {
   return (float)(tile_pixels / options.suffixes);
 }
@@ -15,7 +15,7 @@ CASTRAY_INLINE Vec broadcast_lane(const Vec& v, int l) {
   return {Float(lane(v.x, l)), Float(lane(v.y, l)), Float(lane(v.z, l))};
 }
 
-/// Light points shared by each tile.
+/// Every pixel of a tile gathers from every light point of the tile.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* boxes, VisibilityScratch& s,
                                 Gathered& gathered) {

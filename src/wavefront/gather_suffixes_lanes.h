@@ -23,9 +23,10 @@ CASTRAY_INLINE GlossySuffix glossy_suffix(const KernelScene& scene, const Vertic
           make_frame(broadcast_entry(y.shading_normal, k))};
 }
 
-/// Adds what a glossy suffix sends to each pixel: `lit` over the density, reflected from its light point;
-/// `arriving` times the stratum, reflected from the next segment, whose direction every x_k could have made
-/// y_j take; `emission`.
+/// Adds the radiance that the glossy end y_j of a suffix sends to each pixel of the tile. `lit`: from its
+/// light point, over the sum of pdfs. `arriving`: along the next segment, times the stratum; its weight
+/// is the balance heuristic over all x_k, as each could have made y_j choose this direction. `emission`:
+/// its own.
 template <uint32_t features>
 CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixes, int suffix,
                                const Gatherers& tile, const Transfer& t, const Vec& lit, const Vec& arriving,
@@ -53,8 +54,8 @@ CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixe
   }
 }
 
-/// Every pixel gathers from every suffix of its tile. A suffix that escaped serves the pixel it came from
-/// alone.
+/// Every pixel of a tile gathers from every suffix of the tile. What an escaped suffix found goes to its
+/// own pixel only.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxes* boxes,
                                    const Suffixes& suffixes, const Radiance& radiance, VisibilityScratch& s,

@@ -2,7 +2,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The bounds of the points of some entries; without any the box has no extent and is at the origin.
+/// Bounds of a range of vertices; entries without a hit do not count. A point at the origin if there is
+/// none.
 template <int vectors>
 CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
   const float* axes[3] = {x.p.x, x.p.y, x.p.z};

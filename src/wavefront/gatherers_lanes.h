@@ -3,22 +3,22 @@
 #include "geometry/shaft_lanes.h"
 #include "wavefront/wave_lanes.h"
 
-// The points of a tile, which gather light from points that send it.
+// The camera vertices of a tile, which gather light from senders: light points and ends of suffixes.
 
 namespace castray::CASTRAY_ISA {
 
 inline constexpr int tile_vectors = tile_pixels / width;
 
-/// A tile's points are also bounded in parts, the same for every width.
+/// A tile's points also have bounds in four parts of 16 pixels, whatever the width.
 inline constexpr int tile_parts = 4, part_pixels = tile_pixels / tile_parts,
                      part_vectors = part_pixels / width;
 
-/// The bounds of a tile's points, and of each 16 of them.
+/// Bounds of a tile's points, and of its parts.
 struct TileBoxes {
   Box all, part[tile_parts];
 };
 
-/// The points of one tile that gather: entries first to first + 63 of the camera's vertices.
+/// The points of one tile: entries first to first + 63 of the camera's vertices.
 struct Gatherers {
   const Vertices& x;
   int first;
@@ -26,8 +26,8 @@ struct Gatherers {
   ShaftBudget budget{};
 };
 
-/// The sum of 64 values in an order that does not depend on the width: 16 strided sums, then halves onto
-/// halves.
+/// Sum of 64 values, in an order that does not depend on the width: 16 strided sums, which are then added
+/// pairwise.
 CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
   constexpr int stride = 16 / width;
   alignas(64) float sum[16];
@@ -41,7 +41,7 @@ CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
   return sum[0];
 }
 
-/// The bounds of a tile's points. `in_parts`: those of its parts are wanted too.
+/// Bounds of a tile's points; with `in_parts` also those of its parts.
 void bound_tile(const Vertices& x, int first, bool in_parts, TileBoxes& boxes);
 
 }  // namespace castray::CASTRAY_ISA

@@ -6,7 +6,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// One light point for each glossy suffix, without what the suffix makes of it.
+/// One light point for each glossy suffix. The radiance arrives at y; each pixel applies the BSDF of y
+/// itself.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& out) {
   out.count = 0;
@@ -31,7 +32,7 @@ CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& s
   }
 }
 
-/// The next segment of each glossy suffix, chosen as the suffix's own pixel would.
+/// The next ray of each glossy suffix, sampled with wo towards the suffix's own pixel.
 template <uint32_t features>
 CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, Paths& out) {
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};

@@ -14,13 +14,13 @@
 
 namespace castray {
 
-/// What the camera's rays hit, where they are the same for all samples: a table over the pixels from (x0,y0)
+/// Camera hits, where all samples of a pixel have the same camera ray: a table over pixels, from (x0,y0)
 /// on.
 struct FirstHits {
-  float *t, *b1, *b2;  ///< null: every sample has a ray of its own
+  float *t, *b1, *b2;  ///< null: camera rays differ between samples
   uint32_t* primitive;
   int x0, y0, width, height;
-  bool known;  ///< otherwise they are to be found, and nothing rendered
+  bool known;  ///< false: fill the table, render nothing
 };
 
 struct KernelScene : MaterialTables {
@@ -34,20 +34,20 @@ struct KernelOptions {
   bool sobol;
   bool jitter;
   bool fixed_roulette;
-  float survival;       ///< of fixed roulette
-  uint32_t max_depth;   ///< path edges; 0: no limit
-  float most_indirect;  ///< greatest component of a sample's indirect part; infinity: no bound
-  bool mis;             ///< emission found by BSDF sampling shares with light sampling
-  int suffixes;         ///< of each tile's pixels whose paths are traced on; 0: no sharing
-  int light_points;     ///< shared by a tile
-  uint64_t ragged;      ///< samples before this one swap pixels across the edges of tiles
-  uint32_t seed;        ///< hashed; pixel_key starts from it
+  float survival;       ///< survival probability of fixed roulette
+  uint32_t max_depth;   ///< in path edges; 0: no limit
+  float most_indirect;  ///< bound of each component of a sample's indirect part; may be infinite
+  bool mis;             ///< weigh emission found by BSDF sampling against light sampling
+  int suffixes;         ///< traced for each tile; 0: pixels share no paths
+  int light_points;     ///< shared by the pixels of a tile
+  uint64_t ragged;      ///< samples with a lower index have tiles with ragged edges
+  uint32_t seed;        ///< hashed; what pixel keys start from
 };
 
 /// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.
 struct TileJob {
   int x, y;            ///< top left pixel in the full image; may lie outside
-  int grid_x, grid_y;  ///< the first tile's place in the grid of tiles
+  int grid_x, grid_y;  ///< of the first tile, in the grid of tiles
   int tiles;
   uint64_t sample;
 };
@@ -57,11 +57,11 @@ inline constexpr int tile_pixels = tile_size * tile_size;
 inline constexpr int max_tiles = 8;  ///< of a job
 inline constexpr int batch_size = tile_pixels * max_tiles;
 
-/// A pixel of a tile of ragged edges lies at most so far outside.
+/// How far outside its tile a pixel of a ragged tile lies at most.
 inline constexpr int ragged_reach = tile_size / 2;
 
-/// One job's result: place in the full image, red, green and blue of pixel i of tile k at 64 k + i, and what
-/// it took.
+/// Result of a job: positions in the full image, and radiance, of pixel i of tile k at 64 k + i; rays
+/// traced.
 struct TileResult {
   uint32_t *x, *y;  ///< as signed numbers, for pixels left of or above the image
   float* radiance[3];

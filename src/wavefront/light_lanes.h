@@ -5,7 +5,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// One light point for each vertex.
+/// Light sampling: a light point for each vertex, as a shadow ray with its MIS-weighted radiance.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t vertex, ShadowRays& out) {
   out.count = 0;

@@ -14,8 +14,8 @@ LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i
 /// The points of a tile, whose materials are opaque, as one receiver.
 Receiver receiver_of(const Gatherers& tile);
 
-/// The light points from number `first` on that a tile shares, in as many lanes as there are; with their side
-/// chosen, and offset by their error.
+/// Light points of a tile from number `first` on, as many as there are lanes or points left: emitting
+/// side chosen, and offset to that side by their error.
 LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t tile_key, int first);
 
 }  // namespace castray::CASTRAY_ISA

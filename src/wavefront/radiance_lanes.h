@@ -5,15 +5,15 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Sums of radiance; slots are those of paths: first the pixels, then the shared suffixes, then what light
-/// points send to glossy suffixes.
+/// Radiance sums by slot. Slots of pixels come first, then those of suffixes, then those of light samples
+/// at glossy suffixes.
 struct Radiance {
   alignas(64) float x[3 * batch_size], y[3 * batch_size], z[3 * batch_size];
 
   CASTRAY_INLINE void clear() { __builtin_memset(this, 0, sizeof *this); }
   CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
 
-  /// Adds in the lanes of `m`; no two of them have the same slot.
+  /// Adds the lanes in `m`, no two of which have the same slot.
   CASTRAY_INLINE void add(const uint32_t* slot, Mask m, Vec v) {
     alignas(64) float r[width], g[width], b[width];
     store(r, v.x);

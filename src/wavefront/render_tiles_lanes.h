@@ -3,7 +3,7 @@
 #include "wavefront/camera_rays_lanes.h"
 #include "wavefront/share_lanes.h"
 
-// A job from camera rays to radiance: every pixel by itself, or the pixels of each tile together.
+// Renders a job from camera rays to radiance: with shared paths, or every pixel by itself.
 
 namespace castray::CASTRAY_ISA {
 

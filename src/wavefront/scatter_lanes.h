@@ -6,8 +6,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Survival probability of a path about to leave `vertex`; capped, even where it is fixed, so that every path
-/// ends.
+/// Survival probability of paths at `vertex`. Even a fixed one is capped after many vertices, so that
+/// every path ends.
 CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uint32_t first_roulette,
                               Float brightest) {
   constexpr float highest = (float)highest_survival;
@@ -16,7 +16,7 @@ CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uin
   return vertex < first_roulette ? Float(1.f) : min(brightest, Float(highest));
 }
 
-/// The next ray of each path that survives the roulette.
+/// BSDF sampling and Russian roulette: the next ray of each path that survives.
 template <uint32_t features>
 CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t vertex,
                            uint32_t first_roulette, Paths& out) {

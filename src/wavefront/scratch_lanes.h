@@ -16,7 +16,7 @@ struct Scratch {
   Gathered gathered;
   VisibilityScratch visibility;
   TileBoxes boxes[max_tiles];
-  VecArray<batch_size> direct;  ///< radiance of each pixel without what its first bounce brings
+  VecArray<batch_size> direct;  ///< direct part of each pixel's sample
 };
 
 }  // namespace castray::CASTRAY_ISA

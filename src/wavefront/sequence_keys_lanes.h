@@ -3,11 +3,11 @@
 #include "simd/random_lanes.h"
 #include "wavefront/context_lanes.h"
 
-// Which random numbers a path, or a shared item of a tile, draws.
+// Keys and indices into the random sequence, of pixels and of the items that a tile shares.
 
 namespace castray::CASTRAY_ISA {
 
-/// The key's part that stands for the epoch of the sample index (see sample_block).
+/// Folds the epoch of a sample index into a key (see sample_block).
 CASTRAY_INLINE Uint with_epoch(Uint key, uint64_t sample) {
   const uint32_t epoch = (uint32_t)(sample >> index_bits);
   return epoch ? hash_combine(key, Uint(~epoch)) : key;
@@ -21,8 +21,8 @@ CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
   return lane(with_epoch(Uint(key), c.job.sample), 0);
 }
 
-/// Places of items of `count` (a power of two) in the sequence of a tile: each pass uses the next `count`
-/// indices, in an order of its own.
+/// Sequence indices of `count` (a power of two) items that a tile shares. Each sample takes the next
+/// `count` indices, in a random order of its own.
 CASTRAY_INLINE Uint tile_index(uint32_t key, uint64_t sample, Uint item, uint32_t count) {
   const uint32_t order = hash_once(key, (uint32_t)sample);
   const Uint low(count - 1);

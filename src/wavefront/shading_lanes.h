@@ -5,14 +5,14 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The BSDF at vertices, the frame it lives in, and the viewer's direction there.
+/// BSDF, shading frame, and wo in that frame, of vertices; and the geometric normal.
 struct Shading {
   Bsdf bsdf;
   Frame frame;
   Vec wo, normal;
 
-  /// Whether a direction is on the same side of the real surface as of the shading normal's: smooth normals
-  /// must not let light through an opaque surface.
+  /// Whether a direction is on the same side of the geometric and the shading normal. Smooth normals
+  /// must not let light through opaque surfaces.
   CASTRAY_INLINE Mask consistent(Vec wi, Vec local) const {
     const Mask above = dot(wi, normal) > Float(0.f), local_above = local.z > Float(0.f);
     return (above & local_above) | (~above & ~local_above);
@@ -26,13 +26,13 @@ CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, i
           to_local(frame, load(v.wo, i)), load(v.normal, i)};
 }
 
-/// The normal on wi's side.
+/// The geometric normal on wi's side.
 CASTRAY_INLINE Vec normal_towards(const Vertices& v, int i, Vec wi) {
   const Vec normal = load(v.normal, i);
   return select(dot(wi, normal) < Float(0.f), -normal, normal);
 }
 
-/// Where a ray in direction `wi` leaves a vertex: a point on wi's side.
+/// Origin of a ray in direction wi: offset to wi's side of the surface.
 CASTRAY_INLINE Vec leave(const Vertices& v, int i, Vec wi) {
   const Vec p = load(v.p, i), normal = load(v.normal, i);
   const Float across = select(dot(wi, normal) < Float(0.f), Float(-2.f) * load(v.error + i), Float(0.f));

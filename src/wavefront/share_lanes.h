@@ -6,19 +6,24 @@
 
 // Paths shared by the pixels of a tile (after Bekaert, Sbert and Halton 2002).
 //
-// From some of a tile's camera hits x_k one bounce is traced to a point y_j, where the light that leaves is
-// estimated once; every x_i of the tile then gathers from every y_j. With w_ij = f cos cos' V / |x_i - y_j|^2
-// and p_kj the density per area with which x_k finds y_j (visibility included: it depends on k), the balance
-// heuristic over all x_k that could have been the origin gives pixel i
+// A suffix starts at one of the tile's camera vertices x_k: one BSDF sample is traced to a point y_j, and
+// the radiance that leaves y_j is estimated once. Every camera vertex x_i of the tile then gathers from
+// every y_j. With w_ij = f cos cos' V / |x_i - y_j|^2, and p_kj the pdf, per area, with which BSDF
+// sampling at x_k finds y_j (it has V in it, as that depends on k), the balance heuristic over all
+// possible origins x_k gives pixel i
 //
 //     L_j w_ij m / sum_k p_kj,
 //
-// m the number of pixels among which each origin was chosen uniformly. Light points are shared the same way;
-// where a suffix ends on a light, both ways of finding that point share its emission.
+// where m is the stratum: pixels per suffix. Light points are shared in the same way. Emission at y_j is
+// found by suffixes and by light points, so MIS weights it.
+//
+// Diffuse and rough y_j are shared. Mirrors and glass are not: there suffixes go on as private paths of
+// their own pixels, and camera vertices on mirrors and glass gather nothing.
 
 namespace castray::CASTRAY_ISA {
 
-/// Follows the glossy suffixes with the unit weight that leaves what they reflect to each pixel.
+/// Follows glossy suffixes beyond y_j with a throughput of 1: each pixel applies the BSDF of y_j when it
+/// gathers.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   if (s.glossy.count == 0 || !may_have_edges(c.options, 3)) return;
@@ -30,7 +35,7 @@ CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   follow<Geometry, features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
 }
 
-/// The light that the camera's vertices reflect, gathered tile by tile.
+/// Light reflected by the camera's vertices, gathered tile by tile.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void share(Context& c, Scratch& s) {
   const int n = c.job.tiles * tile_pixels;

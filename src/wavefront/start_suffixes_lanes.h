@@ -11,7 +11,7 @@ CASTRAY_INLINE Vec gather_entries(const VecArray<N>& a, Uint i) {
   return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
 }
 
-/// One bounce from one pixel of each stratum.
+/// Starts the suffixes: one BSDF sample at a random camera vertex of each stratum.
 template <uint32_t features>
 CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes& suffixes, Paths& out) {
   const auto per_tile = (uint32_t)c.options.suffixes;

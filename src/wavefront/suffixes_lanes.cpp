@@ -19,7 +19,7 @@ void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes
   for (int k = 0; k < y.count; ++k) suffixes.landed[y.names.slot[k] - batch_size] = (uint32_t)k + 1;
 }
 
-/// Makes vertex k, at the end of a suffix, a vertex of the path of the suffix's own pixel.
+/// Turns vertex k, the end of a suffix, into a vertex of the path of the suffix's own pixel.
 CASTRAY_INLINE void make_private(const Suffixes& suffixes, Vertices& vertices, int k) {
   const uint32_t suffix = vertices.names.slot[k] - batch_size;
   vertices.names.slot[k] = suffixes.origin[suffix];

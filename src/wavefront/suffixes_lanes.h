@@ -6,12 +6,12 @@ namespace castray::CASTRAY_ISA {
 
 /// The suffixes of a job: suffix j of tile t is number 64 t + j, and has slot batch_size + its number.
 struct Suffixes {
-  alignas(64) uint32_t origin[batch_size];  ///< entry of the camera vertex x_k it started from
+  alignas(64) uint32_t origin[batch_size];  ///< entry of the camera vertex x_k where it started
   alignas(64) uint32_t landed[batch_size];  ///< 1 + its entry in y; 0: it escaped, or was not traced
   VecArray<batch_size> weight;              ///< f cos / pdf at x_k, times the stratum
 
   Vertices y;                            ///< where suffixes landed
-  VecArray<capacity> emission;           ///< of y towards x_k, where light sampling finds y too
+  VecArray<capacity> emission;           ///< of y towards x_k; 0 without MIS
   alignas(64) FloatArray light_density;  ///< pdf of y by light sampling, per area
   alignas(64) UintArray glossy;          ///< 1: y has a rough lobe, and reflects something else to each pixel
 
@@ -19,7 +19,7 @@ struct Suffixes {
   VecArray<batch_size> to_light, onward;  ///< to y's light point, and of the next segment
 };
 
-/// Keeps the lanes of v, which belong to the vertices from i on, with their suffixes.
+/// Stores the lanes of v, of vertices i to i + width - 1, by the numbers of their suffixes.
 CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y, int i, const Vec& v) {
   for (int l = 0; l < width && i + l < y.count; ++l) {
     const uint32_t suffix = y.names.slot[i + l] - batch_size;
@@ -29,15 +29,15 @@ CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y
   }
 }
 
-/// Fills in what belongs to the vertices y. `emission_varies`: they carry their emission, else it is their
-/// material's.
+/// Fills in emission, light_density and landed for the vertices y. `emission_varies`: vertices carry
+/// their emission; otherwise it is their material's.
 void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes);
 
-/// Diffuse and rough y are shared. Mirrors and glass are not: there the suffix goes on as a private path of
-/// the pixel it came from. Copies y to `glossy` where there is a rough lobe, else to `others`.
+/// Copies vertices y with a rough lobe to `glossy`, all others to `others`, where those on mirrors and
+/// glass become vertices of private paths.
 void split_suffixes(const KernelScene& scene, Suffixes& suffixes, Vertices& glossy, Vertices& others);
 
-/// Takes the camera's vertices that cannot share, on mirrors and glass, out of `camera` into `out`.
+/// Moves the camera's vertices on mirrors and glass from `camera` to `out`.
 void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out);
 
 }  // namespace castray::CASTRAY_ISA

@@ -9,14 +9,14 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The MIS weight (balance heuristic) of light that BSDF sampling found, of pdf `arrival`, and light sampling
-/// finds with pdf `light_pdf`, both per solid angle; see Paths::arrival.
+/// MIS weight (balance heuristic) of light found by BSDF sampling with pdf `arrival`, where light
+/// sampling has pdf `light_pdf`, both per solid angle. See Paths::arrival.
 CASTRAY_INLINE Float found_weight(Float arrival, Float light_pdf) {
   return select(arrival >= Float(counts_all), Float(1.f),
                 arrival / max(arrival + light_pdf, Float(0x1p-100f)));
 }
 
-/// The emission of surfaces seen at `distance` under `cosine`, times its MIS weight.
+/// MIS-weighted emission of surfaces hit at `distance`; `cosine` is of the ray and the normal.
 template <uint32_t features>
 CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, const Parameters<features>& p,
                                   Mask front, Float arrival, Float distance, Float cosine) {
@@ -27,7 +27,7 @@ CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, const
   return select(found.shines, emission * weight, black());
 }
 
-/// What rays that leave the scene find there, times its MIS weight.
+/// MIS-weighted radiance from outside the scene along d.
 CASTRAY_INLINE Vec escaped_radiance(const LightList& lights, const Vec& d, Float arrival) {
   const EscapedLight sky = escaped_light(lights, d);
   const Mask sampled = sky.density > Float(0.f);
@@ -35,9 +35,9 @@ CASTRAY_INLINE Vec escaped_radiance(const LightList& lights, const Vec& d, Float
   return select(sampled, sky.radiance * found_weight(arrival, sky.density), sky.radiance);
 }
 
-/// The path vertex at each hit. Paths that leave the scene collect its environment and end. `see_emission`:
-/// some rays count emission. With `keep_misses` every path keeps its place, and a miss is a black vertex with
-/// a normal of (0,0,0).
+/// Path vertices at the hits. Rays that miss add the environment's radiance and end. `see_emission`: hits
+/// add emission. With `keep_misses` every path keeps its entry: a miss is a black vertex with normal
+/// (0,0,0).
 template <class Geometry, uint32_t features, bool keep_misses>
 CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
                             Vertices& out, Radiance& radiance) {

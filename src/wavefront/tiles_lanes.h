@@ -5,7 +5,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-// One for each set of features that is compiled; the names say which.
+// The kernels: one for each combination of geometry and features that is compiled.
 void render_tiles_list_diffuse(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
                                TileResult&);
 void render_tiles_list(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch, TileResult&);

@@ -15,7 +15,7 @@ CASTRAY_INLINE void closest(Context& c, const Paths& paths, bool from_camera, Hi
                from_camera);
 }
 
-/// Adds the radiance of the segments that nothing blocks.
+/// Adds the radiance of unoccluded shadow rays.
 template <class Geometry>
 CASTRAY_INLINE void add_unblocked(Context& c, ShadowRays& rays, Radiance& radiance) {
   c.rays += (uint64_t)rays.count;

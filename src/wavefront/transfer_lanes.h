@@ -4,25 +4,25 @@
 #include "wavefront/gatherers_lanes.h"
 #include "wavefront/shading_lanes.h"
 
-// What the pixels of a tile get from one point that sends light to them.
+// How much light each pixel of a tile gets from a sender: a light point or the end of a suffix.
 
 namespace castray::CASTRAY_ISA {
 
-/// A point that sends light to the tile, on the side of its normal. `own`: the pixel of the tile that
-/// certainly sees it, or -1.
+/// A sender y, which emits to the side of its normal. `own`: the pixel that is known to see it, or -1.
 struct Sender {
   Vec p, normal;
   int own;
 };
 
-/// For each pixel of a tile: f cos cos' V / |x - y|^2, and the density, per area at y, of x's BSDF sampling
-/// finding y. Where all materials are diffuse, `weight` is not filled: it is the density times the albedo.
+/// For each pixel: `weight`, f cos cos' V / |x - y|^2; and `density`, the pdf, per area at y, with which
+/// BSDF sampling at x finds y. With diffuse materials only, `weight` is not stored: it is density times
+/// albedo.
 struct Transfer {
   Float density[tile_vectors];
   Vec weight[tile_vectors];
 };
 
-/// Everything of Transfer but visibility.
+/// Transfer without visibility.
 template <uint32_t features>
 CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const Gatherers& tile,
                                         Transfer& t) {
@@ -53,7 +53,8 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
   }
 }
 
-/// Light that the pixels of a job have gathered; before their albedo, where all materials are diffuse.
+/// Radiance gathered by the pixels of a job; with diffuse materials only, irradiance over pi: not yet
+/// times albedo.
 struct Gathered {
   VecArray<batch_size> sum;
 };

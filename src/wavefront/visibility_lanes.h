@@ -4,7 +4,7 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Room for visibility tests.
+/// Memory for visibility tests.
 struct VisibilityScratch {
   Shaft shaft;
   alignas(64) uint32_t pyramids[max_blockers + 16];
@@ -18,7 +18,7 @@ CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
   if (weights) t.weight[i] = select(hidden, black(), t.weight[i]);
 }
 
-/// Takes out what is hidden from the sender, by a ray for each pixel.
+/// Visibility by one shadow ray a pixel.
 template <class Geometry>
 CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, VisibilityScratch& s,
                                  bool weights, Transfer& t) {
@@ -41,10 +41,10 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& t
     hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
 }
 
-/// From so many pyramids on it pays to choose those that matter to each part of a tile.
+/// With more pyramids than this, it pays to select those that meet each part of a tile.
 inline constexpr int few_pyramids = 16;
 
-/// Takes out what is hidden from the sender.
+/// Visibility by the pyramids of a shaft, or by rays where the shaft holds too much.
 template <class Geometry, uint32_t features>
 CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, VisibilityScratch& s,
                                  Transfer& t) {

@@ -7,9 +7,8 @@
 #include "simd/vec_lanes.h"
 #include "wavefront/kernel_api.h"
 
-// The arrays that flow through the stages of a batch. All are read and written a lane vector at a time;
-// entries past `count` up to the next multiple of the width are garbage that every stage may compute on and
-// none may add up.
+// A wave: arrays that flow through the stages, read and written a lane vector at a time. Entries from
+// `count` to the next multiple of the width are garbage: stages may compute on them but never add them up.
 
 namespace castray::CASTRAY_ISA {
 
@@ -19,8 +18,7 @@ using FloatArray = float[capacity];
 
 using UintArray = uint32_t[capacity];
 
-/// Of each path: the slot its radiance is added to, its random numbers' key and index, and where on a light
-/// the light point of its next vertex lies.
+/// A path's output slot, random-number key and index, and next light sample.
 struct PathNames {
   static constexpr int size = capacity;
   alignas(64) UintArray slot, key, index;
@@ -31,20 +29,20 @@ CASTRAY_INLINE Sequence sequence_of(const PathNames& names, int i) {
   return {load(names.key + i), load(names.index + i)};
 }
 
-/// How much of the emission that a ray finds it counts: all; or, where light sampling looks for it too, the
-/// share that goes with the density of the ray's direction; 0 counts nothing.
+/// Paths::arrival of rays whose emission has MIS weight 1: light sampling cannot find it.
 inline constexpr float counts_all = 0x1p126f;
 
-/// Rays under way, directions of unit length but the camera's, and what they carry.
+/// Rays with the state of their paths. Directions are unit vectors, except the camera's.
 struct Paths {
   int count = 0;
   VecArray<capacity> o, d, throughput;
-  alignas(64) FloatArray arrival;  ///< density of the direction, or counts_all, or 0
-  alignas(64) FloatArray eta2;     ///< what refraction has scaled the throughput by, inverted
+  alignas(64)
+      FloatArray arrival;       ///< pdf of the direction, for MIS; counts_all; or 0: emission does not count
+  alignas(64) FloatArray eta2;  ///< product of eta^2 over refractions, for roulette
   PathNames names;
 };
 
-/// Greatest ray parameters: of rays, and of segments.
+/// Values of t_max: of rays, and of segments.
 struct FarEnds {
   alignas(64) FloatArray infinite, one;
 
@@ -56,7 +54,7 @@ struct FarEnds {
   }
 };
 
-/// What closest-hit search found for each path: distance, facet or triangle, and barycentrics of the latter.
+/// Closest hits: ray parameter, facet or triangle, and barycentrics of a triangle.
 struct Hits {
   alignas(64) FloatArray t, b1, b2;
   alignas(64) UintArray primitive;
@@ -64,9 +62,9 @@ struct Hits {
 
 inline constexpr uint32_t seen_from_front = 0x80000000u;
 
-/// Path vertices, ready to be lit and to scatter: arrays alone, so that entries are copied as a whole.
-/// `normal` is the geometric one, on wo's side, where `p` is offset to by `error`, the bound of its distance
-/// from the surface.
+/// Path vertices. Arrays and nothing else, so that entries are copied as a whole. `normal` is the
+/// geometric normal on wo's side; `p` is offset to that side by `error`, the bound of its distance from
+/// the surface.
 struct VertexArrays {
   static constexpr int size = capacity;
   VecArray<capacity> p, normal, throughput;
@@ -85,7 +83,7 @@ struct Vertices : VertexArrays {
 /// The offset of its record, of VertexArrays::material.
 CASTRAY_INLINE Uint record_of(Uint material) { return material & ~seen_from_front; }
 
-/// Segments o + t d, 0 < t < 1, and the radiance that arrives if nothing is between.
+/// Shadow rays: segments o + t d, 0 < t < 1, and the radiance each adds if unoccluded.
 struct ShadowRays {
   int count = 0;
   VecArray<capacity> o, d, radiance;
