@@ -7,6 +7,7 @@
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfTileDescription.h>
 #include <algorithm>
 #include <cstring>
 
@@ -142,6 +143,14 @@ void check_display_window(const std::string& name, const Imf::Header& header, st
   if (!display.intersects(data)) throw InputError("its data window lies outside its display window");
 }
 
+/// OpenEXR takes the memory of a tile, and of a row of tiles, before it reads them.
+void check_tiles(const std::string& name, const Imf::Header& header, std::size_t file_length) {
+  if (!header.hasTileDescription()) return;
+  const Imf::TileDescription& tile = header.tileDescription();
+  for (const double width : {double(tile.xSize), width_of(header.dataWindow())})
+    check_image_size(name, width, tile.ySize, file_length, exr_pixels_per_byte);
+}
+
 std::optional<Noise> read_noise(Imf::InputPart& part) {
   const Imf::ChannelList& channels = part.header().channels();
   if (!std::all_of(exr_variances.begin(), exr_variances.end(),
@@ -183,6 +192,7 @@ Decoded read_from(const std::string& name, std::string_view bytes, const std::st
   if (header.hasType() && Imf::isDeepData(header.type()))
     throw InputError("it holds deep pixels, which are not read; flatten it");
   check_display_window(name, header, bytes.size());
+  check_tiles(name, header, bytes.size());
   Imf::InputPart part(file, static_cast<int>(layer.part));
   Plane plane = moved(read_layer(name, bytes, part, layer), header.displayWindow());
   Decoded decoded{{plane.width(), plane.height(), static_cast<int>(plane.channels), false, {}, {}}};
