@@ -72,11 +72,10 @@ bool LineReader::next_line() {
     if (line_number_ == 0) line_number_ = 1;
     lines_used_ = 1;
     line_begin_ = line_.data();
-    const bool is_comment = trimmed(line_).starts_with('#');
-    if (line_.ends_with('\\') && !is_comment) join_continued_lines();
+    if (line_.ends_with('\\') && !trimmed(line_).starts_with('#')) join_continued_lines();
     line_ = trimmed(line_);
     word_begin_ = line_.data();
-    if (!line_.empty() && !is_comment) return true;
+    if (!line_.empty() && line_.front() != '#') return true;
   }
   return false;
 }

@@ -22,6 +22,9 @@ class LineReader {
   /// Goes to the next line that holds anything. False at the end.
   bool next_line();
 
+  /// Whether nothing is left of the line.
+  bool at_end() const { return line_.empty(); }
+
   /// The next word of the line, or empty.
   std::string_view word();
   /// The same, but stays in front of it.

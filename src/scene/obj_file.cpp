@@ -94,6 +94,7 @@ class ObjReader {
   /// "v x y z", "v x y z w", "v x y z r g b" or, rarely, "v x y z r g b a".
   void read_position() {
     mesh_.positions.push_back(read_vector("v"));
+    if (lines_.at_end() && mesh_.colors.empty()) return;
     std::array<double, 4> more{};
     std::size_t count = 0;
     for (; count < more.size(); ++count) {

@@ -123,6 +123,25 @@ TEST_CASE("polygons are cut without overlap, concave ones too") {
   }
 }
 
+TEST_CASE("a polygon with a great many corners in a line is cut without overlap") {
+  // Upright, slanted (where rounding bends the line), and with a reflex corner above the line.
+  for (const double slope : {0.0, 0.3})
+    for (const bool notch : {false, true}) {
+      constexpr int count = 20000;
+      std::string text, corners = "f";
+      for (int i = 0; i < count; ++i) {
+        const double x = static_cast<double>(i) / (count - 1);
+        text += "v " + std::to_string(x) + " " + std::to_string(slope * x) + " 0\n";
+      }
+      text += "v 1 2 0\n" + std::string(notch ? "v 0.5 1.5 0\n" : "") + "v 0 2 0\n";
+      for (int i = 1; i <= count + (notch ? 3 : 2); ++i) corners += " " + std::to_string(i);
+      const Areas found = areas(load_text(text + corners + "\n"));
+      const double area = 2 - slope / 2 - (notch ? 0.25 : 0);
+      CHECK(found.sum == Approx(area).epsilon(1e-4));
+      CHECK(length(found.vector) == Approx(area).epsilon(1e-4));
+    }
+}
+
 TEST_CASE("a convex quad is cut from its first corner") {
   const Scene scene = load_text(square + "f 1 2 3 4\n");
   CHECK(scene.triangles == std::vector<Index3>{{0, 1, 2}, {0, 2, 3}});

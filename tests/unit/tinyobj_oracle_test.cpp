@@ -2,10 +2,12 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 
 #include "core/sequences.h"
+#include "scene/mtl_file.h"
 #include "scene/obj_file.h"
 #include "temporary_folder.h"
 
@@ -100,5 +102,73 @@ TEST_CASE("OBJ files are read as tinyobjloader reads them") {
     }
   }
   CHECK(turned > 100);
+  CHECK(same);
+}
+
+TEST_CASE("MTL files say what tinyobjloader reads of them") {
+  // tinyobjloader wants all three numbers of -s and -o.
+  std::uint32_t random = 5;
+  const auto below = [&](std::uint32_t n) { return (random = hash32(random + 1)) % n; };
+  const auto number = [&] { return std::to_string(below(1001) * 1e-3); };
+  const auto color = [&] { return number() + " " + number() + " " + number() + "\n"; };
+  std::string text;
+  for (int m = 0; m < 300; ++m) {
+    text += "newmtl m " + std::to_string(m) + "\n";
+    if (below(2)) text += "Kd " + color();
+    if (below(2)) text += "Ks " + color();
+    if (below(2)) text += "Ke " + color();
+    if (below(2)) text += "Ns " + number() + "\n";
+    if (below(2)) text += "Ni " + number() + "\n";
+    if (below(2)) text += "d " + number() + "\n";
+    if (below(2)) text += "Pr " + number() + "\nPm " + number() + "\n";
+    if (below(2)) text += "illum " + std::to_string(below(10)) + "\n";
+    if (below(2)) text += "map_Kd -s 2 " + number() + " 1 -o " + number() + " 3 0 -clamp on my wood.png\n";
+    if (below(2)) text += "map_bump -bm " + number() + " bumps.png\n";
+    if (below(2)) text += "norm n.png\n";
+    if (below(2)) text += "map_d -imfchan m leaf.png\n";
+  }
+  std::map<std::string, int> names;
+  std::vector<tinyobj::material_t> theirs;
+  std::istringstream stream(text);
+  std::string warning, error;
+  tinyobj::LoadMtl(&names, &theirs, &stream, &warning, &error);
+  WarningList warnings;
+  const MtlFile ours = parse_mtl(text, "o.mtl", warnings);
+  CHECK(warnings.take().empty());
+  REQUIRE(ours.materials.size() == theirs.size());
+  bool same = true;
+  const auto same_color = [&](const std::optional<Vec3d>& a, const tinyobj::real_t b[3]) {
+    for (int i = 0; i < 3; ++i) same &= !a || (*a)[i] == Approx(b[i]);
+  };
+  const auto same_number = [&](const std::optional<double>& a, double b) { same &= !a || *a == Approx(b); };
+  const auto same_file = [&](const std::optional<TextureStatement>& a, const std::string& b) {
+    same &= (a ? a->file : "") == b;
+  };
+  for (std::size_t i = 0; i < theirs.size(); ++i) {
+    const MtlMaterial& a = ours.materials[i];
+    const tinyobj::material_t& b = theirs[i];
+    same &= a.name == b.name;
+    same_color(a.kd, b.diffuse);
+    same_color(a.ks, b.specular);
+    same_color(a.ke, b.emission);
+    same_number(a.ns, b.shininess);
+    same_number(a.ni, b.ior);
+    same_number(a.dissolve, b.dissolve);
+    same_number(a.roughness, b.roughness);
+    same_number(a.metallic, b.metallic);
+    same &= a.illum.value_or(0) == b.illum;
+    same_file(a.map(MtlMap::kd), b.diffuse_texname);
+    same_file(a.map(MtlMap::bump), b.bump_texname);
+    same_file(a.map(MtlMap::normal), b.normal_texname);
+    same_file(a.map(MtlMap::dissolve), b.alpha_texname);
+    if (const auto& map = a.map(MtlMap::kd))
+      for (std::size_t k = 0; k < 2; ++k) {
+        same &= map->scale[k] == Approx(b.diffuse_texopt.scale[k]);
+        same &= map->offset[k] == Approx(b.diffuse_texopt.origin_offset[k]);
+        same &= map->clamp == b.diffuse_texopt.clamp;
+      }
+    if (const auto& map = a.map(MtlMap::bump)) same &= map->bump == Approx(b.bump_texopt.bump_multiplier);
+    if (const auto& map = a.map(MtlMap::dissolve)) same &= map->channel == b.alpha_texopt.imfchan;
+  }
   CHECK(same);
 }
