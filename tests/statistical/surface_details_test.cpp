@@ -147,7 +147,7 @@ TEST_CASE("light points on an image that emits are unbiased", "[statistical]") {
       {{"light"}, {Switch::on, Switch::off}}, {{"light", "red"}, {Switch::on}}};
   for (const auto& [names, switches] : cases) {
     const Scene scene = with_glowing_images(names);
-    RenderOptions reference = wavefront_options(64);
+    RenderOptions reference = wavefront_options(32);
     reference.mis = Switch::on;
     const Expected expected(scene, reference);
     for (const Switch mis : switches) {
@@ -183,11 +183,11 @@ TEST_CASE("the wavefront agrees with castRay on bent normals", "[statistical]") 
 
 TEST_CASE("every kernel agrees with castRay where everything differs from point to point", "[statistical]") {
   const Scene scene = with_everything();
-  RenderOptions reference = wavefront_options(64);
+  RenderOptions reference = wavefront_options(8);
   reference.mis = Switch::on;
   const Expected expected(scene, reference);
   for (const std::string& isa : instruction_sets()) {
-    RenderOptions options = wavefront_options(isa == "scalar" ? 4 : 16);
+    RenderOptions options = wavefront_options(isa == "scalar" ? 1 : 4);
     options.isa = isa;
     options.mis = Switch::on;
     expected.check(isa, scene, options);
