@@ -85,10 +85,6 @@ enum KernelFeature : uint32_t {
 
 /// Up to so many triangles a flat list is faster than a tree.
 inline constexpr uint32_t longest_list = 64;
-/// Light and BSDF sampling are combined where emitters cover more than this part of the scene's surface:
-/// light points very near the shaded point would dominate the variance. A lamp covers a hundredth of a room;
-/// a furnace is all emitter.
-inline constexpr double emitting_share_for_mis = 0.1;
 
 #undef CASTRAY_CONTRACT
 

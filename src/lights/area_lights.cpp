@@ -23,9 +23,7 @@ Corners corners(const Scene& scene, std::uint32_t triangle) {
 
 template <class T>
 AreaLights<T>::AreaLights(const Scene& scene) : scene_(scene), material_density_(scene.materials.size()) {
-  double total_area = 0, light_area = 0, power = 0;
-  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i)
-    total_area += length(corners(scene, i).twice_area()) / 2;
+  double power = 0;
   const std::vector<Vec3d> mean = mean_emissions(scene);
   std::vector<double> powers;
   for (const std::uint32_t i : scene.lights) {
@@ -33,7 +31,6 @@ AreaLights<T>::AreaLights(const Scene& scene) : scene_(scene), material_density_
     const Material& material = scene.material_of(i);
     const Vec3d normal = c.twice_area();
     const double area = length(normal) / 2;
-    light_area += area;
     powers.push_back(area * luminance(mean[scene.triangle_material[i]]));
     power += powers.back();
     cumulative_.push_back(power);
@@ -47,7 +44,6 @@ AreaLights<T>::AreaLights(const Scene& scene) : scene_(scene), material_density_
     triangles_[i].choice = static_cast<T>(powers[i] / power);
     triangles_[i].pdf_area = material_density_[scene.triangle_material[triangles_[i].index]];
   }
-  share_of_surface_ = total_area > 0 ? light_area / total_area : 0;
 }
 
 template <class T>

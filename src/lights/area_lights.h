@@ -36,9 +36,6 @@ class AreaLights {
   /// The density, per area, with which `sample` returns a given point of a triangle of `material`.
   T pdf_area(std::size_t material) const { return material_density_[material]; }
 
-  /// Emitting area over the area of all triangles.
-  double share_of_surface() const { return share_of_surface_; }
-
  private:
   struct Triangle {
     Vec3<T> v0, v1, v2, normal, radiance;
@@ -51,7 +48,6 @@ class AreaLights {
   std::vector<Triangle> triangles_;
   std::vector<double> cumulative_;  ///< probability of choosing one of the lights 0..i
   std::vector<T> material_density_;
-  double share_of_surface_ = 0;
 };
 
 }  // namespace castray

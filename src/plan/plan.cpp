@@ -1,9 +1,11 @@
 #include "plan/plan.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/contract.h"
 #include "geometry/build_quality.h"
+#include "lights/light_share.h"
 #include "materials/descriptor.h"
 #include "scene/needs.h"
 
@@ -41,10 +43,6 @@ std::string kernel_name(const Plan& plan) {
 
 }  // namespace
 
-bool uses_mis(Switch mis, double emitting_share_of_surface) {
-  return mis == Switch::automatic ? emitting_share_of_surface > emitting_share_for_mis : mis == Switch::on;
-}
-
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window) {
   const SceneNeeds needs = needs_of(scene);
   Plan plan;
@@ -53,11 +51,11 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   const bool materials = detail || options.generic || needs.types != std::set{MaterialType::diffuse};
   plan.features =
       (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
-  plan.mis = uses_mis(options.mis, needs.emitting_share);
   plan.choose_lights_by_importance = options.lights != LightSampling::area;
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
+  plan.mis = uses_mis(options.mis, scene, std::max(1.0, double(plan.suffixes) / plan.light_points));
   plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options, window);
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, std::string_view what) {

@@ -26,8 +26,4 @@ struct Plan {
 /// For an image of the window's full size.
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
 
-/// Whether light and BSDF sampling are combined: as asked, or automatically where emitters cover so much of
-/// the scene (emitting_share_for_mis) that light points next to the shaded point would dominate the variance.
-bool uses_mis(Switch mis, double emitting_share_of_surface);
-
 }  // namespace castray

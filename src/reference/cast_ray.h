@@ -4,7 +4,7 @@
 
 #include "castray/render_options.h"
 #include "lights/area_lights.h"
-#include "plan/plan.h"
+#include "lights/light_share.h"
 #include "reference/estimator.h"
 #include "reference/segments.h"
 #include "reference/surface.h"
@@ -44,7 +44,7 @@ class CastRay {
         textbook_(textbook),
         options_(options),
         segments_{options.epsilon},
-        mis_(uses_mis(options.mis, lights_.share_of_surface())) {}
+        mis_(uses_mis(options.mis, parts.scene, 1)) {}
 
   /// Radiance of one camera sample of pixel (x,y) of a width x height image; adds the rays traced to `rays`.
   Vec3<T> sample_pixel(int x, int y, int width, int height, std::uint64_t sample, std::uint64_t& rays) const {
@@ -110,7 +110,7 @@ class CastRay {
     const Vec3<T>& le = x.emission;
     if (!arrival.shared) return le;
     const T light_pdf = lights_.pdf_area(x.material) * distance * distance / std::abs(cosine);
-    return le * balance(arrival.pdf, light_pdf);
+    return le * bsdf_share(light_pdf, arrival.pdf);
   }
 
   /// Integral over the emitters' areas, estimated at one point x': f Le cos cos' V / (|x' - x|^2 pdf).
@@ -127,7 +127,7 @@ class CastRay {
     Vec3<T> radiance = x.bsdf.evaluate(x.wo, local) * y.radiance *
                        (std::abs(local.z) * cos_light / (distance2 * y.pdf_area));
     if (!(max_component(radiance) > 0)) return {};
-    if (mis_) radiance *= balance(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
+    if (mis_) radiance *= light_share(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
     ++path.rays;
     return segments_.visible(accel_, x, y) ? radiance : Vec3<T>();
   }

@@ -12,7 +12,8 @@ namespace castray {
 // * Vertex k = 0, 1, ... of a path is its k-th hit, reached by k + 1 edges. Random numbers are those of
 //   PathBlocks, in the order given there.
 // * Emission that a ray hits counts in full if the ray is the camera's or was sampled from a perfectly
-//   specular lobe. Otherwise light sampling accounts for it: it counts 0, or by its MIS weight.
+//   specular lobe. Otherwise light sampling accounts for it: it counts 0, or by its MIS weight
+//   (lights/light_share.h).
 // * At each vertex one light point is sampled (AreaLights).
 // * The environment is not sampled as a light: a ray that escapes adds its full radiance.
 // * One direction is sampled from the BSDF; then Russian roulette; then the next vertex.
@@ -28,13 +29,6 @@ T survival_probability(const std::optional<double>& fixed, std::uint32_t vertex,
   }
   if (vertex < first_roulette_vertex) return 1;
   return brightest < cap ? brightest : cap;
-}
-
-/// MIS weight, by the balance heuristic (Veach and Guibas 1995), of a technique with pdf `own` where another
-/// one samples the same path with pdf `other`.
-template <class T>
-T balance(T own, T other) {
-  return own / (own + other);
 }
 
 }  // namespace castray

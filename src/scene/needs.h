@@ -13,7 +13,6 @@ struct SceneNeeds {
   bool textures = false, smooth_normals = false;
   std::set<MaterialType> types;  ///< of materials
   bool environment = false;
-  double emitting_share = 0;  ///< of the scene's surface area
 };
 
 SceneNeeds needs_of(const Scene& scene);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/light_share_lanes.h"
 #include "wavefront/light_points_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/visibility_lanes.h"
@@ -32,9 +33,11 @@ CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* 
         transfer<Geometry, features>(c, {broadcast_lane(point.p, l), broadcast_lane(point.normal, l), -1},
                                      gatherers, s, t);
         const float density = lane(point.density, l);
-        const float share =
-            c.options.mis ? density / (density + ordered_sum(t.density) / stratum_of(c.options)) : 1.f;
-        add_scaled<features>(gathered, gatherers.first, t, broadcast_lane(point.weight, l) * Float(share));
+        Vec radiance = broadcast_lane(point.weight, l);
+        if (c.options.mis)
+          radiance =
+              radiance * light_share(Float(density), Float(ordered_sum(t.density) / stratum_of(c.options)));
+        add_scaled<features>(gathered, gatherers.first, t, radiance);
       }
     }
   }

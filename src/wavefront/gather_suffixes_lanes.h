@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/light_share_lanes.h"
 #include "wavefront/gather_light_lanes.h"
 #include "wavefront/radiance_lanes.h"
 #include "wavefront/suffixes_lanes.h"
@@ -87,7 +88,8 @@ CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxe
                                    gatherers, s, t);
       const float density = ordered_sum(t.density) / stratum;
       if (!(density > 0)) continue;
-      const Vec emission = emitted * Float(1.f / (density + suffixes.light_density[entry]));
+      const Vec emission =
+          emitted * (bsdf_share(Float(suffixes.light_density[entry]), Float(density)) * Float(1.f / density));
       if constexpr (features & feature_materials) {
         if (glossy) {
           add_glossy<features>(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),

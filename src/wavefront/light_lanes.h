@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/light_share_lanes.h"
 #include "wavefront/light_points_lanes.h"
 #include "wavefront/shading_lanes.h"
 
@@ -29,9 +30,7 @@ CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t ve
       pdf = max(dot(normal, wi), Float(0.f)) * Float(1.f / pi);
       f_cos = load_kd(vertices.parameters, i) * pdf;
     }
-    const Float share = c.options.mis
-                            ? point.density / max(point.density + pdf * segment.solid_angle, Float(0x1p-100f))
-                            : Float(1.f);
+    const Float share = c.options.mis ? light_share(point.density, pdf * segment.solid_angle) : Float(1.f);
     const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
     const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;

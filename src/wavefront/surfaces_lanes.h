@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/light_share_lanes.h"
 #include "lights/lights_lanes.h"
 #include "materials/normals_lanes.h"
 #include "materials/surface_values_lanes.h"
@@ -9,11 +10,10 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// MIS weight (balance heuristic) of light found by BSDF sampling with pdf `arrival`, where light
-/// sampling has pdf `light_pdf`, both per solid angle. See Paths::arrival.
+/// MIS weight of light found by BSDF sampling with pdf `arrival`, where light sampling has pdf
+/// `light_pdf`, both per solid angle. See Paths::arrival.
 CASTRAY_INLINE Float found_weight(Float arrival, Float light_pdf) {
-  return select(arrival >= Float(counts_all), Float(1.f),
-                arrival / max(arrival + light_pdf, Float(0x1p-100f)));
+  return select(arrival >= Float(counts_all), Float(1.f), bsdf_share(light_pdf, arrival));
 }
 
 /// MIS-weighted emission of surfaces hit at `distance`; `cosine` is of the ray and the normal.
@@ -62,8 +62,11 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       resolve_values(scene, scene.geometry.tree.triangles, material, place, parameters.value);
     const Float arrival = load(paths.arrival + i);
     if (see_emission) {
-      const Vec emission = found_emission(scene, material, parameters, front, arrival, t, towards);
-      radiance.add(paths.names.slot + i, hit & (arrival > Float(0.f)), throughput * emission);
+      const Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
+      if (any(counts)) {
+        const Vec emission = found_emission(scene, material, parameters, front, arrival, t, towards);
+        radiance.add(paths.names.slot + i, counts, throughput * emission);
+      }
     }
     radiance.add(paths.names.slot + i, active & ~hit,
                  throughput * escaped_radiance(scene.lights, d, arrival));

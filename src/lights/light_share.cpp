@@ -1,0 +1,82 @@
+#include "lights/light_share.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "geometry/bounds.h"
+
+namespace castray {
+
+namespace {
+
+/// Looking at more pairs of a light and a triangle would take long.
+constexpr std::size_t most_pairs = 1u << 22;
+
+bool all_diffuse(const Scene& scene) {
+  return std::ranges::all_of(scene.triangle_material, [&](std::uint16_t m) {
+    return scene.materials[m].type == MaterialType::diffuse;
+  });
+}
+
+Vec3d corner(const Scene& scene, std::size_t triangle, std::size_t k) {
+  return Vec3d(scene.positions[scene.triangles[triangle][k]]);
+}
+
+/// Across the triangle, its counter-clockwise side's; twice as long as its area.
+Vec3d twice_area(const Scene& scene, std::size_t triangle) {
+  const Vec3d v0 = corner(scene, triangle, 0);
+  return cross(corner(scene, triangle, 1) - v0, corner(scene, triangle, 2) - v0);
+}
+
+/// Whether the light shines on any corner of the triangle, walls between them left aside.
+bool shines_on(const Scene& scene, std::uint32_t light, std::size_t triangle) {
+  constexpr double in_plane = 0x1p-20;  // scenes are scaled to about 1
+  const Vec3d normal = normalize(twice_area(scene, light));
+  const bool two_sided = scene.material_of(light).two_sided_emission;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double above = dot(corner(scene, triangle, k) - corner(scene, light, 0), normal);
+    if (above > in_plane || (two_sided && above < -in_plane)) return true;
+  }
+  return false;
+}
+
+/// Of the distance between two boxes.
+double distance2(const Bounds& a, const Bounds& b) {
+  const __m128 gap = _mm_max_ps(_mm_sub_ps(a.lower, b.upper), _mm_sub_ps(b.lower, a.upper));
+  const Vec3d positive(to_vec3(_mm_max_ps(gap, _mm_setzero_ps())));
+  return dot(positive, positive);
+}
+
+/// Whether the light shines on anything closer than that.
+bool shines_within(const Scene& scene, std::uint32_t light, double squared_distance) {
+  const MeshView mesh = mesh_of(scene);
+  const Bounds bounds = triangle_bounds(mesh, light);
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i)
+    if (distance2(bounds, triangle_bounds(mesh, i)) < squared_distance && shines_on(scene, light, i))
+      return true;
+  return false;
+}
+
+/// Whether BSDF sampling may be denser than light sampling somewhere. Per area of a light, at distance d, the
+/// density of a diffuse surface's directions is at most 1 / (pi d^2).
+bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
+  if (scene.lights.empty()) return false;
+  if (scene.lights.size() > most_pairs / scene.triangles.size() || !all_diffuse(scene)) return true;
+  double power = 0;
+  for (const std::uint32_t light : scene.lights) {
+    const Material& m = scene.material_of(light);
+    power += luminance(m.ke) * (m.two_sided_emission ? 2 : 1) * length(twice_area(scene, light)) / 2;
+  }
+  return std::ranges::any_of(scene.lights, [&](std::uint32_t light) {
+    const double density = luminance(scene.material_of(light).ke) / power;
+    return shines_within(scene, light, bsdf_samples / (std::numbers::pi * density));
+  });
+}
+
+}  // namespace
+
+bool uses_mis(Switch mis, const Scene& scene, double bsdf_samples) {
+  return mis == Switch::automatic ? bsdf_may_be_denser(scene, bsdf_samples) : mis == Switch::on;
+}
+
+}  // namespace castray
