@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "geometry/bounds.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -42,9 +43,8 @@ bool shines_on(const Scene& scene, std::uint32_t light, std::size_t triangle) {
 
 /// Of the distance between two boxes.
 double distance2(const Bounds& a, const Bounds& b) {
-  const __m128 gap = _mm_max_ps(_mm_sub_ps(a.lower, b.upper), _mm_sub_ps(b.lower, a.upper));
-  const Vec3d positive(to_vec3(_mm_max_ps(gap, _mm_setzero_ps())));
-  return dot(positive, positive);
+  const Vec3d gap(to_vec3(max(max(a.lower - b.upper, b.lower - a.upper), Float4(0.f))));
+  return dot(gap, gap);
 }
 
 /// Whether the light shines on anything closer than that.
@@ -62,13 +62,15 @@ bool shines_within(const Scene& scene, std::uint32_t light, double squared_dista
 bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
   if (scene.lights.empty()) return false;
   if (scene.lights.size() > most_pairs / scene.triangles.size() || !all_diffuse(scene)) return true;
+  const std::vector<Vec3d> emission = mean_emissions(scene);
   double power = 0;
   for (const std::uint32_t light : scene.lights) {
-    const Material& m = scene.material_of(light);
-    power += luminance(m.ke) * (m.two_sided_emission ? 2 : 1) * length(twice_area(scene, light)) / 2;
+    const int sides = scene.material_of(light).two_sided_emission ? 2 : 1;
+    power +=
+        luminance(emission[scene.triangle_material[light]]) * sides * length(twice_area(scene, light)) / 2;
   }
   return std::ranges::any_of(scene.lights, [&](std::uint32_t light) {
-    const double density = luminance(scene.material_of(light).ke) / power;
+    const double density = luminance(emission[scene.triangle_material[light]]) / power;
     return shines_within(scene, light, bsdf_samples / (std::numbers::pi * density));
   });
 }

@@ -1,5 +1,7 @@
 #include "plan/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -71,6 +73,12 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   skip(needs.lights > 1, "choice among lights");
   skip(plan.mis, "multiple importance sampling");
   return plan;
+}
+
+void choose_by_pilot(Plan& plan, double gain_of_sharing) {
+  if (gain_of_sharing < 1) plan.suffixes = 0;
+  plan.kernel = fmt::format("{} (by a pilot, sharing is {:.2g} times as efficient as plain paths)",
+                            kernel_name(plan), gain_of_sharing);
 }
 
 }  // namespace castray

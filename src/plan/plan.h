@@ -23,7 +23,12 @@ struct Plan {
   std::vector<std::string> skipped;          ///< what the scene does not need
 };
 
-/// For an image of the window's full size.
+/// For an image of the window's full size. Automatic sharing is on here; a pilot may take it back
+/// (choose_by_pilot).
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
+
+/// Takes what does better, if shared paths are that many times as efficient as plain ones, and says so in
+/// Plan::kernel.
+void choose_by_pilot(Plan& plan, double gain_of_sharing);
 
 }  // namespace castray

@@ -9,11 +9,13 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
 
 #include "core/sequences.h"
 #include "geometry/build_quality.h"
 #include "wavefront/choose_kernel.h"
 #include "wavefront/kernel_scene.h"
+#include "wavefront/pilot.h"
 
 namespace castray {
 
@@ -209,7 +211,9 @@ class Wavefront final : public PreparedIntegrator {
       : plan_(make_plan(scene, job.options, job.window)),
         kernel_(choose_kernel(job.options.isa)),
         triangles_(scene.triangles.size()),
-        data_(scene, plan_, job.window.full_width, job.window.full_height, job.threads) {}
+        data_(scene, plan_, job.window.full_width, job.window.full_height, job.threads) {
+    if (job.options.reuse.automatic && job.options.max_depth != 1) settle_sharing(job);
+  }
 
   BandWork work(const Job& job) const override {
     const auto run = std::make_shared<WavefrontRun>(kernel_, data_.view, plan_, job);
@@ -229,6 +233,20 @@ class Wavefront final : public PreparedIntegrator {
   }
 
  private:
+  /// Keeps shared paths unless a pilot says that plain ones do better.
+  void settle_sharing(const Job& job) {
+    std::vector<Workplace> workplaces;
+    for (int i = 0; i < job.threads; ++i) workplaces.emplace_back(kernel_);
+    const RenderTiles render_tiles = kernel_.render_tiles[plan_.features];
+    const std::optional<double> gain = gain_of_sharing(
+        kernel_options(job.options, plan_), job.window.full_width, job.window.full_height, job.threads,
+        [&](const KernelOptions& options, const TileJob& tile, TileResult& result) {
+          void* scratch = workplaces[static_cast<std::size_t>(omp_get_thread_num())].scratch.get();
+          render_tiles(data_.view, options, tile, scratch, result);
+        });
+    if (gain) choose_by_pilot(plan_, *gain);
+  }
+
   std::string accel_summary() const {
     if (!data_.bvh)
       return fmt::format("list: {} triangles as {} facets", triangles_, data_.facets.facets.size());

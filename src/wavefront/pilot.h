@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "wavefront/kernel_api.h"
+
+namespace castray {
+
+/// One job's radiance and rays. Called by several threads of one team at once.
+using RenderJob = std::function<void(const KernelOptions&, const TileJob&, TileResult&)>;
+
+/// Efficiency, 1 / (error x cost), of shared paths over that of plain ones, by a pilot: both render the same
+/// few tiles, some samples in each of some independent replicates. Error is the variance of a pixel's mean
+/// over replicates, relative as relMSE is, without what the camera sees of emitters: that is noise of both
+/// alike. Cost is counted in rays. None if the image is too small to spare a pilot, or if no light was found.
+///
+/// A function of the scene, the image's full size and `shared` but its seed: never of time, threads, or the
+/// part of the image or of its samples that is wanted. So parts of one image agree. None of the pilot's
+/// samples is in any image.
+std::optional<double> gain_of_sharing(const KernelOptions& shared, int width, int height, int threads,
+                                      const RenderJob& render_job);
+
+}  // namespace castray
