@@ -64,6 +64,12 @@ struct Material {
 
   TextureMap& map(SurfaceParameter p) { return maps[static_cast<std::size_t>(p)]; }
   const TextureMap& map(SurfaceParameter p) const { return maps[static_cast<std::size_t>(p)]; }
+  /// Whether an image changes more than what of the surface is there.
+  bool has_maps_of_values() const {
+    for (std::size_t p = 0; p < maps.size(); ++p)
+      if (maps[p].used() && p != static_cast<std::size_t>(SurfaceParameter::coverage)) return true;
+    return false;
+  }
   bool has_maps() const {
     for (const TextureMap& map : maps)
       if (map.used()) return true;
@@ -73,6 +79,11 @@ struct Material {
   bool has_alpha_map() const {
     return map(SurfaceParameter::alpha).used() || map(SurfaceParameter::roughness).used();
   }
+  /// Whether an image changes what is emitted on the mean, ke times coverage.
+  bool has_emission_map() const {
+    return emits() && (map(SurfaceParameter::ke).used() || map(SurfaceParameter::coverage).used());
+  }
+  bool may_have_holes() const { return coverage < 1 || map(SurfaceParameter::coverage).used(); }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
 };
 

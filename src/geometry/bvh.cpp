@@ -11,8 +11,8 @@
 namespace castray {
 
 std::string to_string(const BvhStats& b) {
-  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s", b.triangles,
-                     b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds);
+  return fmt::format("BVH: {} triangles, {} nodes, depth {}, SAH cost {:.1f}, {} bytes, {:.3f} s",
+                     b.triangles, b.nodes, b.depth, b.sah_cost, b.bytes, b.seconds);
 }
 
 Bvh Bvh::build(const MeshView& mesh, int threads) {
@@ -32,7 +32,7 @@ Bvh Bvh::build(const MeshView& mesh, int threads) {
 }
 
 template <bool any, class T>
-Hit<T> Bvh::traverse(const Ray<T>& ray) const {
+Hit<T> Bvh::traverse(const Ray<T>& ray, const HitFilter<T>& counts) const {
   Hit<T> hit;
   if (mesh_.count == 0 || !is_traceable(ray)) return hit;
   const BvhNode& root = tree_.root;
@@ -57,7 +57,7 @@ Hit<T> Bvh::traverse(const Ray<T>& ray) const {
   while (node) {
     if (node->is_leaf()) {
       for (std::uint32_t i = 0; i < node->count; ++i) {
-        intersect_triangle(test, mesh_, tree_.primitives[node->first + i], ray.t_max, hit);
+        intersect_triangle(test, mesh_, tree_.primitives[node->first + i], ray.t_max, counts, hit);
         if (any && hit.found()) return hit;
       }
       if (hit.found()) nearest = hit.t;
@@ -79,18 +79,18 @@ Hit<T> Bvh::traverse(const Ray<T>& ray) const {
 }
 
 template <class T>
-Hit<T> Bvh::closest(const Ray<T>& ray) const {
-  return traverse<false>(ray);
+Hit<T> Bvh::closest(const Ray<T>& ray, const HitFilter<T>& counts) const {
+  return traverse<false>(ray, counts);
 }
 
 template <class T>
-bool Bvh::occluded(const Ray<T>& ray) const {
-  return traverse<true>(ray).found();
+bool Bvh::occluded(const Ray<T>& ray, const HitFilter<T>& counts) const {
+  return traverse<true>(ray, counts).found();
 }
 
-template Hit<float> Bvh::closest(const Ray<float>&) const;
-template Hit<double> Bvh::closest(const Ray<double>&) const;
-template bool Bvh::occluded(const Ray<float>&) const;
-template bool Bvh::occluded(const Ray<double>&) const;
+template Hit<float> Bvh::closest(const Ray<float>&, const HitFilter<float>&) const;
+template Hit<double> Bvh::closest(const Ray<double>&, const HitFilter<double>&) const;
+template bool Bvh::occluded(const Ray<float>&, const HitFilter<float>&) const;
+template bool Bvh::occluded(const Ray<double>&, const HitFilter<double>&) const;
 
 }  // namespace castray

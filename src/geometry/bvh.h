@@ -27,19 +27,19 @@ class Bvh {
   /// Any mesh of finite coordinates will do, an empty one included. The tree does not depend on `threads`.
   static Bvh build(const MeshView& mesh, int threads);
 
-  /// The nearest hit with 0 < t < t_max; of equally near ones that of the lowest triangle.
+  /// The nearest hit with 0 < t < t_max that counts; of equally near ones that of the lowest triangle.
   template <class T>
-  Hit<T> closest(const Ray<T>& ray) const;
+  Hit<T> closest(const Ray<T>& ray, const HitFilter<T>& counts = {}) const;
 
-  /// Whether there is any hit with 0 < t < t_max.
+  /// Whether there is any hit with 0 < t < t_max that counts.
   template <class T>
-  bool occluded(const Ray<T>& ray) const;
+  bool occluded(const Ray<T>& ray, const HitFilter<T>& counts = {}) const;
 
   const BvhStats& stats() const { return stats_; }
 
  private:
   template <bool any, class T>
-  Hit<T> traverse(const Ray<T>& ray) const;
+  Hit<T> traverse(const Ray<T>& ray, const HitFilter<T>& counts) const;
 
   MeshView mesh_;
   BinaryTree tree_;

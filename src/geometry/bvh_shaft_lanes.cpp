@@ -81,9 +81,16 @@ CASTRAY_INLINE void add_packets(const TrianglePacket* const (&packets)[packets_a
   }
 }
 
-}  // namespace
+CASTRAY_INLINE bool has_partial(const AllThere&, const TrianglePacket&) { return false; }
+CASTRAY_INLINE bool has_partial(const PartlyThere& there, const TrianglePacket& packet) {
+  bool any = false;
+  for (const uint32_t triangle : packet.triangle) any |= there.is_partial(triangle);
+  return any;
+}
 
-bool triangle_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out) {
+template <class Counts>
+CASTRAY_INLINE bool make_shaft(const WideBvhView& bvh, const Counts& counts, const Vec& y, const Box& box,
+                               ShaftBudget& budget, Shaft& out) {
   out.count = 0;
   if (bvh.triangles == 0) return true;
   const Vec center = broadcast(box.center) - y, half = broadcast(box.half);
@@ -105,7 +112,9 @@ bool triangle_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftB
       const int count = (int)(child % max_leaf_packets) + 1;
       if ((packets += count) > budget.packets) return budget.gave_up(), false;
       for (int k = 0; k < count; ++k) {
-        waiting[to_add++] = (const TrianglePacket*)at + k;
+        const TrianglePacket* packet = (const TrianglePacket*)at + k;
+        if (has_partial(counts, *packet)) return false;
+        waiting[to_add++] = packet;
         if (to_add < packets_at_once) continue;
         add_packets(waiting, to_add, y, center, half, out);
         to_add = 0;
@@ -120,6 +129,17 @@ bool triangle_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftB
   if (to_add > 0) add_packets(waiting, to_add, y, center, half, out);
   budget.succeeded(packets);
   return true;
+}
+
+}  // namespace
+
+bool triangle_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out) {
+  return make_shaft(bvh, AllThere{}, y, box, budget, out);
+}
+
+bool triangle_shaft(const WideBvhView& bvh, const PartlyThere& there, const Vec& y, const Box& box,
+                    ShaftBudget& budget, Shaft& out) {
+  return make_shaft(bvh, there, y, box, budget, out);
 }
 
 }  // namespace castray::CASTRAY_ISA

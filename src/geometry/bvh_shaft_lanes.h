@@ -1,12 +1,15 @@
 #pragma once
 
+#include "geometry/presence_lanes.h"
 #include "geometry/shaft_lanes.h"
 #include "geometry/wide_bvh_view.h"
 
 namespace castray::CASTRAY_ISA {
 
 /// The triangles whose pyramids from y meet the box (shaft culling: Haines and Wallace 1991). False if
-/// they exceed the budget.
+/// they exceed the budget, or if some may be partial: a pyramid has no holes.
 bool triangle_shaft(const WideBvhView& bvh, const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out);
+bool triangle_shaft(const WideBvhView& bvh, const PartlyThere& there, const Vec& y, const Box& box,
+                    ShaftBudget& budget, Shaft& out);
 
 }  // namespace castray::CASTRAY_ISA

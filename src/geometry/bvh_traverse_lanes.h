@@ -41,9 +41,10 @@ CASTRAY_INLINE uint32_t mixed_signs8(F8 u, F8 v, F8 w) {
   return both_less8<false>(min8(u, min8(v, w)), zero, zero, max8(u, max8(v, w)));
 }
 
-/// Tests the packets of a leaf; keeps the nearest hit of the ray. Returns whether there was any.
-CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, RayGroup& group, uint32_t r, float& hit_t,
-                                     uint32_t& hit_triangle, float& b1, float& b2) {
+/// Tests the packets of a leaf; keeps the nearest hit of the ray that counts. Returns whether there was any.
+template <class Counts>
+CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, const Counts& counts, RayGroup& group,
+                                     uint32_t r, float& hit_t, uint32_t& hit_triangle, float& b1, float& b2) {
   F8 x[3], y[3], z[3];
   for (uint32_t v = 0; v < 3; ++v) {
     z[v] = vertex8(packet, v, group.axis[2][r]) - splat8(group.origin[2][r]);
@@ -68,10 +69,12 @@ CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, RayGroup& gro
   for (uint32_t hits = candidates & ahead & ~mixed_signs8(u, v, w); hits; hits &= hits - 1) {
     const int l = __builtin_ctz(hits);
     if (t[l] < hit_t || (t[l] == hit_t && packet.triangle[l] < hit_triangle)) {
+      const float at1 = v[l] / det[l], at2 = w[l] / det[l];
+      if (!counts(packet.triangle[l], at1, at2)) continue;
       group.nearest[r] = hit_t = t[l];
       hit_triangle = packet.triangle[l];
-      b1 = v[l] / det[l];
-      b2 = w[l] / det[l];
+      b1 = at1;
+      b2 = at2;
       found = true;
     }
   }
@@ -87,9 +90,9 @@ CASTRAY_INLINE uint32_t drop_farther(const Stack& stack, uint32_t size, float ne
 
 /// Traces the rays of a group, several at a time and each a node or a leaf in turn: while one waits for
 /// memory the others work, and what is done next branches the same way for all.
-template <bool any, class Output>
-CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_t count, float* stack_t,
-                                uint32_t* stack_child, const Output& out) {
+template <bool any, class Counts, class Output>
+CASTRAY_INLINE void trace_group(const WideBvhView& bvh, const Counts& counts, RayGroup& group, uint32_t count,
+                                float* stack_t, uint32_t* stack_child, const Output& out) {
   constexpr uint32_t slots = 32;
   const uint32_t room = 7u * (uint32_t)bvh.depth + 9;
   uint32_t ray[slots], size[slots], child[slots];
@@ -138,7 +141,8 @@ CASTRAY_INLINE void trace_group(const WideBvhView& bvh, RayGroup& group, uint32_
       const TrianglePacket* packet = (const TrianglePacket*)address(child[s]);
       bool found = false;
       for (uint32_t left = child[s] % max_leaf_packets + 1; left; --left) {
-        found |= intersect_packet(*packet++, group, r, out.t[r], out.triangle[r], out.b1[r], out.b2[r]);
+        found |=
+            intersect_packet(*packet++, counts, group, r, out.t[r], out.triangle[r], out.b1[r], out.b2[r]);
       }
       if (found) {
         const Stack stack{stack_t + s * room, stack_child + s * room};

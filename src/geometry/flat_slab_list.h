@@ -13,15 +13,15 @@ class FlatSlabList {
  public:
   explicit FlatSlabList(const MeshView& mesh) : mesh_(mesh) {}
 
-  Hit<T> closest(const Ray<T>& ray) const {
+  Hit<T> closest(const Ray<T>& ray, const HitFilter<T>& counts) const {
     Hit<T> hit;
     const TriangleTest<T> test(ray);
     for (std::uint32_t i = 0; i < mesh_.count; ++i)
-      if (meets_box(ray, mesh_.triangles[i])) intersect_triangle(test, mesh_, i, ray.t_max, hit);
+      if (meets_box(ray, mesh_.triangles[i])) intersect_triangle(test, mesh_, i, ray.t_max, counts, hit);
     return hit;
   }
 
-  bool occluded(const Ray<T>& ray) const { return closest(ray).found(); }
+  bool occluded(const Ray<T>& ray, const HitFilter<T>& counts) const { return closest(ray, counts).found(); }
 
  private:
   bool meets_box(const Ray<T>& ray, const Index3& t) const {

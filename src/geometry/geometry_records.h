@@ -30,10 +30,20 @@ struct FlatList {
   float camera_slack;  ///< list_slack for rays from the camera
 };
 
+/// Triangles that are only partly there. A point of one is there in some worlds and not in others, with the
+/// probability of its coverage; different points independently of each other. In each world the scene is an
+/// ordinary one with holes.
+struct PartialTriangles {
+  const uint32_t* triangles;  ///< a bit for each, the lowest first; null: all are wholly there
+  bool (*is_there)(const void* self, uint32_t world, uint32_t triangle, float b1, float b2);
+  const void* self;
+};
+
 /// All of a scene as a tree of triangles.
 struct TriangleTree {
   WideBvhView bvh;
   TriangleTable triangles;
+  PartialTriangles partial;
 };
 
 /// A scene is held as one of the two.

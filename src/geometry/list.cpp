@@ -15,7 +15,7 @@ TriangleList::TriangleList(const MeshView& mesh) : mesh_(mesh) {
 }
 
 template <bool any, class T>
-Hit<T> TriangleList::search(const Ray<T>& ray) const {
+Hit<T> TriangleList::search(const Ray<T>& ray, const HitFilter<T>& counts) const {
   Hit<T> hit;
   if (!is_traceable(ray)) return hit;
   const TriangleTest<T> test(ray);
@@ -23,7 +23,7 @@ Hit<T> TriangleList::search(const Ray<T>& ray) const {
   for (const TriangleLanes& lanes : lanes_) {
     for (unsigned left = test.candidates(lanes, std::min(ray.t_max, hit.t)); left != 0; left &= left - 1) {
       const std::uint32_t triangle = first + static_cast<std::uint32_t>(std::countr_zero(left));
-      if (triangle < mesh_.count) intersect_triangle(test, mesh_, triangle, ray.t_max, hit);
+      if (triangle < mesh_.count) intersect_triangle(test, mesh_, triangle, ray.t_max, counts, hit);
       if (any && hit.found()) return hit;
     }
     first += 8;
@@ -32,29 +32,30 @@ Hit<T> TriangleList::search(const Ray<T>& ray) const {
 }
 
 template <bool any, class T>
-[[gnu::target("avx2,fma"), gnu::flatten]] Hit<T> TriangleList::search_avx2(const Ray<T>& ray) const {
-  return search<any>(ray);
+[[gnu::target("avx2,fma"), gnu::flatten]] Hit<T> TriangleList::search_avx2(const Ray<T>& ray,
+                                                                           const HitFilter<T>& counts) const {
+  return search<any>(ray, counts);
 }
 
 template <bool any, class T>
-Hit<T> TriangleList::dispatch(const Ray<T>& ray) const {
+Hit<T> TriangleList::dispatch(const Ray<T>& ray, const HitFilter<T>& counts) const {
   static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return avx2 ? search_avx2<any>(ray) : search<any>(ray);
+  return avx2 ? search_avx2<any>(ray, counts) : search<any>(ray, counts);
 }
 
 template <class T>
-Hit<T> TriangleList::closest(const Ray<T>& ray) const {
-  return dispatch<false>(ray);
+Hit<T> TriangleList::closest(const Ray<T>& ray, const HitFilter<T>& counts) const {
+  return dispatch<false>(ray, counts);
 }
 
 template <class T>
-bool TriangleList::occluded(const Ray<T>& ray) const {
-  return dispatch<true>(ray).found();
+bool TriangleList::occluded(const Ray<T>& ray, const HitFilter<T>& counts) const {
+  return dispatch<true>(ray, counts).found();
 }
 
-template Hit<float> TriangleList::closest(const Ray<float>&) const;
-template Hit<double> TriangleList::closest(const Ray<double>&) const;
-template bool TriangleList::occluded(const Ray<float>&) const;
-template bool TriangleList::occluded(const Ray<double>&) const;
+template Hit<float> TriangleList::closest(const Ray<float>&, const HitFilter<float>&) const;
+template Hit<double> TriangleList::closest(const Ray<double>&, const HitFilter<double>&) const;
+template bool TriangleList::occluded(const Ray<float>&, const HitFilter<float>&) const;
+template bool TriangleList::occluded(const Ray<double>&, const HitFilter<double>&) const;
 
 }  // namespace castray

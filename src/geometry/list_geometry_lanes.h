@@ -14,7 +14,8 @@ class ListGeometry {
   static constexpr int blocker_corners = 4;         ///< of the pyramids in its shafts
   static constexpr bool has_many_blockers = false;  ///< shafts are long enough to select from
 
-  CASTRAY_INLINE explicit ListGeometry(const SceneGeometry& scene) : list_(scene.list) {}
+  /// `world`: see PartialTriangles. All facets are wholly there.
+  CASTRAY_INLINE ListGeometry(const SceneGeometry& scene, uint32_t /*world*/) : list_(scene.list) {}
 
   /// Nearest hits. Rays start within the scene or, all of them, at the camera. b1 and b2 become 0.
   CASTRAY_INLINE void closest(const RayBatch& rays, bool from_camera) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 #include "castray/scene.h"
@@ -24,6 +25,10 @@ struct Hit {
 
   bool found() const { return triangle != Scene::no_index; }
 };
+
+/// Whether a ray's hit counts; empty: all do. It is asked of hits in any order.
+template <class T>
+using HitFilter = std::function<bool(const Hit<T>&)>;
 
 /// Triangles as accelerators see them; borrowed, not owned.
 struct MeshView {

@@ -12,13 +12,16 @@ class TreeGeometry {
   static constexpr int blocker_corners = 3;
   static constexpr bool has_many_blockers = true;
 
-  CASTRAY_INLINE explicit TreeGeometry(const SceneGeometry& scene) : tree_(scene.tree) {}
+  CASTRAY_INLINE TreeGeometry(const SceneGeometry& scene, uint32_t world)
+      : tree_(scene.tree), there_{scene.tree.partial, world} {}
 
   CASTRAY_INLINE void closest(const RayBatch& rays, bool /*from_camera*/) const {
-    bvh_closest(tree_.bvh, rays);
+    has_partial() ? bvh_closest(tree_.bvh, there_, rays) : bvh_closest(tree_.bvh, rays);
   }
 
-  CASTRAY_INLINE void occluded(const ShadowBatch& rays) const { bvh_occluded(tree_.bvh, rays); }
+  CASTRAY_INLINE void occluded(const ShadowBatch& rays) const {
+    has_partial() ? bvh_occluded(tree_.bvh, there_, rays) : bvh_occluded(tree_.bvh, rays);
+  }
 
   CASTRAY_INLINE SurfacePoint surface_point(const Vec& /*o*/, const Vec& /*d*/, const SurfaceHit& hit) const {
     return triangle_point(tree_.triangles, hit);
@@ -30,11 +33,15 @@ class TreeGeometry {
   }
 
   CASTRAY_INLINE bool make_shaft(const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out) const {
-    return triangle_shaft(tree_.bvh, y, box, budget, out);
+    return has_partial() ? triangle_shaft(tree_.bvh, there_, y, box, budget, out)
+                         : triangle_shaft(tree_.bvh, y, box, budget, out);
   }
 
  private:
+  CASTRAY_INLINE bool has_partial() const { return tree_.partial.triangles; }
+
   const TriangleTree& tree_;
+  PartlyThere there_;
 };
 
 }  // namespace castray::CASTRAY_ISA

@@ -115,14 +115,16 @@ bool is_nearer(T t, std::uint32_t triangle, const Hit<T>& than) {
   return t < than.t || (t == than.t && triangle < than.triangle);
 }
 
-/// Tests one triangle of `mesh` and keeps its hit in `hit` if it is nearer.
+/// Tests one triangle of `mesh` and keeps its hit in `hit` if it counts and is nearer.
 template <class T>
 void intersect_triangle(const TriangleTest<T>& test, const MeshView& mesh, std::uint32_t triangle, T t_max,
-                        Hit<T>& hit) {
+                        const HitFilter<T>& counts, Hit<T>& hit) {
   const Index3& v = mesh.triangles[triangle];
   T t, b1, b2;
   if (!test.intersect(mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]], t, b1, b2)) return;
-  if (t > 0 && t < t_max && is_nearer(t, triangle, hit)) hit = {t, triangle, b1, b2};
+  if (!(t > 0 && t < t_max && is_nearer(t, triangle, hit))) return;
+  const Hit<T> found{t, triangle, b1, b2};
+  if (!counts || counts(found)) hit = found;
 }
 
 }  // namespace castray

@@ -12,9 +12,10 @@ struct Hits {
   float *b1, *b2;
 };
 
-template <bool any, class Batch>
-CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t first, uint32_t count,
-                          RayGroup& group, float* stack_t, uint32_t* stack_child, const Hits& hits) {
+template <bool any, class Counts, class Batch>
+CASTRAY_INLINE void trace(const WideBvhView& bvh, const Counts& counts, const Batch& rays, uint32_t first,
+                          uint32_t count, RayGroup& group, float* stack_t, uint32_t* stack_child,
+                          const Hits& hits) {
   const uint32_t last = first + count;
   for (uint32_t i = first; i < last; i += width) {
     const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last),
@@ -28,26 +29,26 @@ CASTRAY_INLINE void trace(const WideBvhView& bvh, const Batch& rays, uint32_t fi
     hits.triangle[i] = no_hit;
     hits.b1[i] = hits.b2[i] = 0;
   }
-  if (bvh.triangles > 0) trace_group<any>(bvh, group, count, stack_t, stack_child, hits);
+  if (bvh.triangles > 0) trace_group<any>(bvh, counts, group, count, stack_t, stack_child, hits);
 }
 
 constexpr uint32_t slots = 32;
 
-}  // namespace
-
-void bvh_closest(const WideBvhView& bvh, const RayBatch& rays) {
+template <class Counts>
+CASTRAY_INLINE void find_closest(const WideBvhView& bvh, const Counts& counts, const RayBatch& rays) {
   const uint32_t room = slots * (7u * (uint32_t)bvh.depth + 9);
   float* const stack_t = (float*)__builtin_alloca(room * sizeof(float));
   uint32_t* const stack_child = (uint32_t*)__builtin_alloca(room * sizeof(uint32_t));
   RayGroup group;
   for (uint32_t first = 0; first < rays.count; first += group_size) {
     const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
-    trace<false>(bvh, rays, first, count, group, stack_t, stack_child,
+    trace<false>(bvh, counts, rays, first, count, group, stack_t, stack_child,
                  {rays.t + first, rays.triangle + first, rays.b1 + first, rays.b2 + first});
   }
 }
 
-void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) {
+template <class Counts>
+CASTRAY_INLINE void find_occluded(const WideBvhView& bvh, const Counts& counts, const ShadowBatch& rays) {
   const uint32_t room = slots * (7u * (uint32_t)bvh.depth + 9);
   float* const stack_t = (float*)__builtin_alloca(room * sizeof(float));
   uint32_t* const stack_child = (uint32_t*)__builtin_alloca(room * sizeof(uint32_t));
@@ -56,9 +57,23 @@ void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) {
   uint32_t triangle[group_size];
   for (uint32_t first = 0; first < rays.count; first += group_size) {
     const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
-    trace<true>(bvh, rays, first, count, group, stack_t, stack_child, {t, triangle, b1, b2});
+    trace<true>(bvh, counts, rays, first, count, group, stack_t, stack_child, {t, triangle, b1, b2});
     for (uint32_t i = 0; i < count; ++i) rays.occluded[first + i] = triangle[i] != no_hit;
   }
+}
+
+}  // namespace
+
+void bvh_closest(const WideBvhView& bvh, const RayBatch& rays) { find_closest(bvh, AllThere{}, rays); }
+
+void bvh_closest(const WideBvhView& bvh, const PartlyThere& there, const RayBatch& rays) {
+  find_closest(bvh, there, rays);
+}
+
+void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) { find_occluded(bvh, AllThere{}, rays); }
+
+void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const ShadowBatch& rays) {
+  find_occluded(bvh, there, rays);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -35,7 +35,8 @@ AreaLights<T>::AreaLights(const Scene& scene) : scene_(scene), material_density_
     power += powers.back();
     cumulative_.push_back(power);
     triangles_.push_back({Vec3<T>(c.v0), Vec3<T>(c.v1), Vec3<T>(c.v2), Vec3<T>(normalize(normal)),
-                          Vec3<T>(material.ke), T(0), T(0), i, material.two_sided_emission});
+                          Vec3<T>(material.ke * material.coverage), T(0), T(0), i,
+                          material.two_sided_emission});
   }
   for (double& c : cumulative_) c /= power;
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
@@ -53,8 +54,10 @@ LightPoint<T> AreaLights<T>::sample(double u_choice, Point2<T> u) const {
   const auto [b1, b2] = uniform_triangle(u);
   const TrianglePoint<T> point = point_on_triangle(t.v0, t.v1, t.v2, b1, b2);
   Vec3<T> radiance = t.radiance;
-  if (const Material& m = scene_.material_of(t.index); m.map(SurfaceParameter::ke).used())
-    radiance = surface_values(scene_, m, TrianglePlace<T>{t.index, b1, b2}).color(slot_emission);
+  if (const Material& m = scene_.material_of(t.index); m.has_emission_map()) {
+    const SurfaceValues<T> values = surface_values(scene_, m, TrianglePlace<T>{t.index, b1, b2});
+    radiance = values.color(slot_emission) * values.at(slot_coverage);
+  }
   return {point.p, point.error, t.normal, radiance, t.pdf_area, t.choice, t.index, t.two_sided};
 }
 

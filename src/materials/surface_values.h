@@ -106,11 +106,13 @@ SurfaceValues<T> surface_values(const Scene& scene, const Material& m, const Tri
   return values;
 }
 
-/// The mean emission of a material, its image over its whole area: what lights are chosen by.
+/// The mean emission of a material, its image over its whole area and what of it is there: what lights are
+/// chosen by. An image of the coverage does not count.
 inline Vec3d mean_emission(const Scene& scene, const Material& m) {
   const TextureMap& map = m.map(SurfaceParameter::ke);
-  if (!map.used() || scene.triangle_uvs.empty()) return m.ke;
-  return m.ke * mean_color(scene.textures[static_cast<std::size_t>(map.texture)], map);
+  const Vec3d constant = m.ke * m.coverage;
+  if (!map.used() || scene.triangle_uvs.empty()) return constant;
+  return constant * mean_color(scene.textures[static_cast<std::size_t>(map.texture)], map);
 }
 
 /// Of all materials.
@@ -124,8 +126,12 @@ inline std::vector<Vec3d> mean_emissions(const Scene& scene) {
 template <class T>
 T coverage_at(const Scene& scene, const TrianglePlace<T>& place) {
   const Material& m = scene.material_of(place.triangle);
-  return m.map(SurfaceParameter::coverage).used() ? surface_values(scene, m, place).at(slot_coverage)
-                                                  : static_cast<T>(m.coverage);
+  const TextureMap& map = m.map(SurfaceParameter::coverage);
+  const auto constant = static_cast<T>(m.coverage);
+  const auto uv = map.used() ? uv_at(scene, place) : std::nullopt;
+  if (!uv) return constant;
+  const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
+  return std::clamp(constant * map_number(texture, map, (*uv)[0], (*uv)[1]), T(0), T(1));
 }
 
 }  // namespace castray

@@ -81,7 +81,7 @@ inline __attribute__((noinline)) void resolve_values(const MaterialTables& table
   });
 }
 
-/// What is emitted at points of materials of which an image may say it.
+/// What is emitted at points of materials of which an image may say it, times the share that is there.
 inline __attribute__((noinline)) void resolve_emission(const MaterialTables& tables,
                                                        const TriangleTable& triangles, const Uint& material,
                                                        const TrianglePlace& at, Vec& emission) {
@@ -89,24 +89,11 @@ inline __attribute__((noinline)) void resolve_emission(const MaterialTables& tab
   for_each_detail(tables, material, Mask(true), [&](const KernelDetail& d, Mask here) {
     Float own[parameter_floats];
     for (int k = 0; k < 3; ++k) own[slot_emission + k] = Float(d.value[slot_emission + k]);
-    apply_maps(d, 1u << slot_emission, in, here, own);
-    emission =
-        select(here, Vec{own[slot_emission], own[slot_emission + 1], own[slot_emission + 2]}, emission);
-  });
-}
-
-/// The share of the surface that is there at points.
-CASTRAY_INLINE Float coverage_at(const MaterialTables& tables, const TriangleTable& triangles, Uint material,
-                                 const TrianglePlace& at) {
-  Float coverage = gather(tables.materials, &KernelMaterial::coverage, material);
-  const MapInputs in = map_inputs(triangles, at);
-  for_each_detail(tables, material, Mask(true), [&](const KernelDetail& d, Mask here) {
-    Float own[parameter_floats];
     own[slot_coverage] = Float(d.value[slot_coverage]);
-    apply_maps(d, 1u << slot_coverage, in, here, own);
-    coverage = select(here, own[slot_coverage], coverage);
+    apply_maps(d, 1u << slot_emission | 1u << slot_coverage, in, here, own);
+    const Vec whole{own[slot_emission], own[slot_emission + 1], own[slot_emission + 2]};
+    emission = select(here, whole * own[slot_coverage], emission);
   });
-  return coverage;
 }
 
 }  // namespace castray::CASTRAY_ISA

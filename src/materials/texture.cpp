@@ -51,19 +51,8 @@ Texture make_texture(std::string name, Raster&& raster, ColorSpace space) {
 }
 
 Texel texel(const Texture& texture, std::size_t index) {
-  const auto channels = static_cast<std::size_t>(texture.channels), first = index * channels;
-  const auto& values = byte_values(texture.color_space);
-  const bool has_alpha = channels % 2 == 0;
-  const std::size_t colors = channels - (has_alpha ? 1 : 0);
-  Texel texel{0, 0, 0, 1};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const std::size_t i = first + (colors == 1 ? 0 : c);
-    texel[c] = texture.bytes.empty() ? texture.floats[i] : values[texture.bytes[i]];
-  }
-  if (has_alpha) {
-    const std::size_t i = first + channels - 1;
-    texel[3] = texture.bytes.empty() ? texture.floats[i] : static_cast<float>(texture.bytes[i]) / 255.f;
-  }
+  Texel texel;
+  for (std::size_t c = 0; c < texel.size(); ++c) texel[c] = texel_channel(texture, index, c);
   return texel;
 }
 

@@ -20,6 +20,16 @@ Texture make_texture(std::string name, const Image& image);
 /// What a texture's bytes stand for.
 const std::array<float, 256>& byte_values(ColorSpace space);
 
+/// Red, green, blue or alpha (0 to 3) of a texel, linear.
+inline float texel_channel(const Texture& texture, std::size_t index, std::size_t channel) {
+  const auto channels = static_cast<std::size_t>(texture.channels);
+  if (channel == 3 && channels % 2 != 0) return 1;
+  const std::size_t i = index * channels + (channel == 3 ? channels - 1 : channels < 3 ? 0 : channel);
+  if (texture.bytes.empty()) return texture.floats[i];
+  return channel == 3 ? static_cast<float>(texture.bytes[i]) / 255.f
+                      : byte_values(texture.color_space)[texture.bytes[i]];
+}
+
 /// Red, green, blue and alpha, linear.
 using Texel = std::array<float, 4>;
 Texel texel(const Texture& texture, std::size_t index);
@@ -30,20 +40,25 @@ Vec3d mean_color(const Texture& texture, const TextureMap& map);
 /// The four texels around a point, in rows from the top, and the point's place between their centres.
 template <class T>
 struct TexelSquare {
-  Texel texels[2][2];
+  const Texture& texture;
+  std::size_t index[2][2];
   T s, t;
+
+  T texel(int row, int column, std::size_t channel) const {
+    return T(texel_channel(texture, index[row][column], channel));
+  }
 
   /// How the value changes per texel, to the right and downwards.
   std::array<T, 2> gradient(std::size_t channel) const {
-    const auto at = [&](int row, int column) { return T(texels[row][column][channel]); };
+    const auto at = [&](int row, int column) { return texel(row, column, channel); };
     return {(at(0, 1) - at(0, 0)) * (T(1) - t) + (at(1, 1) - at(1, 0)) * t,
             (at(1, 0) - at(0, 0)) * (T(1) - s) + (at(1, 1) - at(0, 1)) * s};
   }
 
   /// Bilinear.
   T value(std::size_t channel) const {
-    const T top = T(texels[0][0][channel]) * (T(1) - s) + T(texels[0][1][channel]) * s;
-    const T bottom = T(texels[1][0][channel]) * (T(1) - s) + T(texels[1][1][channel]) * s;
+    const T top = texel(0, 0, channel) * (T(1) - s) + texel(0, 1, channel) * s;
+    const T bottom = texel(1, 0, channel) * (T(1) - s) + texel(1, 1, channel) * s;
     return top * (T(1) - t) + bottom * t;
   }
 };
@@ -68,12 +83,12 @@ TexelSquare<T> texels_around(const Texture& texture, const TextureMap& map, T u,
   const T y =
       (T(1) - inside(T(map.scale[1]) * v + T(map.offset[1]))) * static_cast<T>(texture.height) - T(0.5);
   const T x0 = std::floor(x), y0 = std::floor(y);
-  TexelSquare<T> square{{}, x - x0, y - y0};
+  TexelSquare<T> square{texture, {}, x - x0, y - y0};
   for (int row = 0; row < 2; ++row)
     for (int column = 0; column < 2; ++column)
-      square.texels[row][column] =
-          texel(texture, index(y0 + T(row), texture.height) * static_cast<std::size_t>(texture.width) +
-                             index(x0 + T(column), texture.width));
+      square.index[row][column] =
+          index(y0 + T(row), texture.height) * static_cast<std::size_t>(texture.width) +
+          index(x0 + T(column), texture.width);
   return square;
 }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t few_light_triangles = 8;
 
 bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
-  if (needs.textures || needs.smooth_normals) return false;  // facets have no barycentrics
+  if (needs.textures || needs.smooth_normals || needs.coverage) return false;  // facets have no barycentrics
   return options.accel == AccelKind::list ||
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
 }
@@ -67,6 +67,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   skip(plan.list || plan.build == BuildQuality::best, "cut boxes");
   skip(detail || needs.textures, "textures");
   skip(detail || needs.smooth_normals, "smooth normals");
+  skip(needs.coverage, "coverage");
   for (const MaterialDescriptor* material : material_descriptors())
     if (material->type != MaterialType::diffuse) skip(materials, material->name);
   skip(needs.environment, "environment");

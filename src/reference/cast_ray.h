@@ -5,6 +5,7 @@
 #include "castray/render_options.h"
 #include "lights/area_lights.h"
 #include "lights/light_share.h"
+#include "materials/coverage.h"
 #include "reference/estimator.h"
 #include "reference/segments.h"
 #include "reference/surface.h"
@@ -15,11 +16,13 @@ namespace castray {
 /// A scene as castRay sees it; the scene must outlive it.
 template <class T>
 struct SceneParts {
-  explicit SceneParts(const Scene& s) : scene(s), surfaces(s), lights(s), environment(s.environment) {}
+  explicit SceneParts(const Scene& s)
+      : scene(s), surfaces(s), lights(s), coverage(s), environment(s.environment) {}
 
   const Scene& scene;
   Surfaces<T> surfaces;
   AreaLights<T> lights;
+  Coverage coverage;
   Vec3<T> environment;
 };
 
@@ -29,7 +32,8 @@ struct SceneParts {
 ///
 /// whose integral is split in two: light that comes straight from an emitter, sampled over the emitters'
 /// areas with d wi = dA cos' / |x' - x|^2, and light reflected at x', sampled by the BSDF. One sample of each
-/// per vertex. T is float or double; Accel has `Hit<T> closest(Ray<T>)` and `bool occluded(Ray<T>)`.
+/// per vertex. T is float or double; Accel has `Hit<T> closest(Ray<T>, HitFilter<T>)` and
+/// `bool occluded(Ray<T>, HitFilter<T>)`.
 template <class T, class Accel>
 class CastRay {
  public:
@@ -39,6 +43,7 @@ class CastRay {
       : scene_(parts.scene),
         surfaces_(parts.surfaces),
         lights_(parts.lights),
+        coverage_(parts.coverage),
         environment_(parts.environment),
         accel_(accel),
         textbook_(textbook),
@@ -49,6 +54,7 @@ class CastRay {
   /// Radiance of one camera sample of pixel (x,y) of a width x height image; adds the rays traced to `rays`.
   Vec3<T> sample_pixel(int x, int y, int width, int height, std::uint64_t sample, std::uint64_t& rays) const {
     Path path{.key = pixel_key(x, y, options_.seed), .sample = sample};
+    path.there = what_is_there(path);
     const std::array<float, 4> u = draw(path, PathBlocks::camera);
     const double jitter_x = options_.jitter ? u[0] : 0.5, jitter_y = options_.jitter ? u[1] : 0.5;
     path.light_u = {T(u[2]), T(u[3])};
@@ -68,6 +74,7 @@ class CastRay {
     Vec3<T> throughput{1};  ///< of radiance without the scale of refractions: for roulette only
     Point2<T> light_u{};    ///< for the light point of this vertex
     std::uint64_t rays = 0;
+    HitFilter<T> there{};  ///< which hits count
   };
 
   /// How a ray was sampled, which decides how much of the emission that it hits counts.
@@ -79,6 +86,16 @@ class CastRay {
     static Arrival shared_with_lights(T pdf) { return {.counts = true, .shared = true, .pdf = pdf}; }
   };
 
+  /// Where surfaces are only partly there, each path has a world of its own.
+  HitFilter<T> what_is_there(const Path& path) const {
+    if (!coverage_.partial_triangles()) return {};
+    const std::uint32_t low = hash_combine(path.key, static_cast<std::uint32_t>(path.sample));
+    const std::uint32_t world = hash_combine(low, static_cast<std::uint32_t>(path.sample >> 32));
+    return [this, world](const Hit<T>& hit) {
+      return !coverage_.is_partial(hit.triangle) || coverage_.is_there(world, hit.triangle, hit.b1, hit.b2);
+    };
+  }
+
   std::array<float, 4> draw(const Path& path, std::uint32_t block) const {
     return textbook_.draw(path.key, path.sample, block);
   }
@@ -86,7 +103,7 @@ class CastRay {
   /// L: radiance that arrives at the ray's origin against its direction (of unit length).
   Vec3<T> cast_ray(const Ray<T>& ray, Path& path, const Arrival& arrival) const {
     ++path.rays;
-    const Hit<T> hit = accel_.closest(ray);
+    const Hit<T> hit = accel_.closest(ray, path.there);
     if (!hit.found()) return environment_;
     Surface<T> x = surfaces_.at(hit, ray);
     segments_.place(x, hit, ray);
@@ -129,7 +146,7 @@ class CastRay {
     if (!(max_component(radiance) > 0)) return {};
     if (mis_) radiance *= light_share(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
     ++path.rays;
-    return segments_.visible(accel_, x, y) ? radiance : Vec3<T>();
+    return segments_.visible(accel_, x, y, path.there) ? radiance : Vec3<T>();
   }
 
   /// Integral over all directions of light that is not direct, estimated in one: f |cos| L / pdf.
@@ -161,6 +178,7 @@ class CastRay {
   const Scene& scene_;
   const Surfaces<T>& surfaces_;
   const AreaLights<T>& lights_;
+  const Coverage& coverage_;
   Vec3<T> environment_;
   const Accel& accel_;
   const Textbook<T>& textbook_;

@@ -36,19 +36,23 @@ struct Segments {
   /// Whether nothing lies between x and y: no hit with t < 1 on the unnormalised segment between both offset
   /// points. It is traced from the light, because the error at the far end grows with the distance: an
   /// occluder so near to x that it is missed there would have stopped the path before x. With an absolute
-  /// epsilon: the first hit from x towards y is within epsilon of y.
+  /// epsilon: the first hit from x towards y is within epsilon of y. `there`: which hits count.
   template <class Accel>
-  bool visible(const Accel& accel, const Surface<T>& x, const LightPoint<T>& y) const {
+  bool visible(const Accel& accel, const Surface<T>& x, const LightPoint<T>& y,
+               const HitFilter<T>& there) const {
     const Vec3<T> towards = y.p - x.p;
     if (epsilon) {
       const Vec3<T> from = origin(x, towards);
       const Ray<T> ray{from, normalize(y.p - from)};
-      const Hit<T> hit = accel.closest(ray);
+      const HitFilter<T> counts = [&](const Hit<T>& h) {
+        return !there || h.triangle == y.triangle || there(h);
+      };
+      const Hit<T> hit = accel.closest(ray, counts);
       return hit.found() && length(y.p - (from + ray.direction * hit.t)) < static_cast<T>(*epsilon);
     }
     const Vec3<T> from = offset_origin(y.p, y.error, y.normal, -towards);
     const Vec3<T> to = offset_origin(x.p, far_error(x, towards), x.normal, towards);
-    return !accel.occluded(Ray<T>{from, to - from, T(1)});
+    return !accel.occluded(Ray<T>{from, to - from, T(1)}, there);
   }
 };
 

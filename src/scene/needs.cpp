@@ -13,8 +13,9 @@ SceneNeeds needs_of(const Scene& scene) {
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     const Material& m = scene.materials[i];
-    needs.textures |= m.has_maps() && !scene.triangle_uvs.empty();
+    needs.textures |= m.has_maps_of_values() && !scene.triangle_uvs.empty();
     needs.textures |= m.vertex_colors && !scene.triangle_colors.empty();
+    needs.coverage |= m.may_have_holes();
     needs.types.insert(m.type);
   }
   return needs;

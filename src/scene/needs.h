@@ -12,6 +12,7 @@ struct SceneNeeds {
   std::size_t triangles = 0, lights = 0;  ///< lights: emitting triangles
   bool textures = false, smooth_normals = false;
   std::set<MaterialType> types;  ///< of materials
+  bool coverage = false;         ///< surfaces of which only a share is there
   bool environment = false;
 };
 

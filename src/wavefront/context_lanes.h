@@ -10,7 +10,13 @@ struct Context {
   const KernelOptions& options;
   const TileJob& job;
   const FarEnds& ends;
+  uint32_t world;  ///< of PartialTriangles: one for each sample of the image
   uint64_t rays = 0;
 };
+
+template <class Geometry>
+CASTRAY_INLINE Geometry geometry_of(const Context& c) {
+  return Geometry(c.scene.geometry, c.world);
+}
 
 }  // namespace castray::CASTRAY_ISA

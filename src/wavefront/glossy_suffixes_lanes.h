@@ -22,7 +22,7 @@ CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& s
     const Mask lit = active & (segment.solid_angle > Float(0.f)) & (dot(normal, wi) > Float(0.f)) &
                      (dot(load(y.shading_normal, i), wi) > Float(0.f));
     const int n = out.count;
-    const Segment traced = to_trace(Geometry(c.scene.geometry), lights, segment, p, normal);
+    const Segment traced = to_trace(geometry_of<Geometry>(c), lights, segment, p, normal);
     compress_store(out.o, n, lit, traced.o);
     compress_store(out.d, n, lit, traced.d);
     compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);

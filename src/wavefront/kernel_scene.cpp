@@ -31,9 +31,15 @@ TriangleTable triangle_table(const Scene& scene, const std::vector<std::uint32_t
 }
 
 bool has_emission_images(const Scene& scene) {
-  return !scene.triangle_uvs.empty() && std::ranges::any_of(scene.materials, [](const Material& m) {
-    return m.emits() && m.map(SurfaceParameter::ke).used();
-  });
+  return !scene.triangle_uvs.empty() && std::ranges::any_of(scene.materials, &Material::has_emission_map);
+}
+
+PartialTriangles partial_triangles(const Coverage& coverage) {
+  const auto is_there = [](const void* self, std::uint32_t world, std::uint32_t triangle, float b1,
+                           float b2) {
+    return static_cast<const Coverage*>(self)->is_there(world, triangle, b1, b2);
+  };
+  return {coverage.partial_triangles(), is_there, &coverage};
 }
 
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {
@@ -46,7 +52,7 @@ std::vector<std::uint32_t> pack_materials(const Scene& scene) {
 }  // namespace
 
 KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads)
-    : materials(scene) {
+    : coverage(scene), materials(scene) {
   if (plan.list) {
     facets = make_facets(scene);
     lights = LightTable(scene, facets.facets, plan.choose_lights_by_importance, threads);
@@ -65,6 +71,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.lights.may_be_covered = may_be_covered(scene, emitting);
     view.geometry.tree.bvh = bvh->view();
     view.geometry.tree.triangles = triangle_table(scene, material_words);
+    view.geometry.tree.partial = partial_triangles(coverage);
   }
   view.lights.by_solid_angle = plan.lights_by_solid_angle;
   put(view.lights.environment, scene.environment);

@@ -8,6 +8,7 @@
 #include "geometry/facets.h"
 #include "geometry/wide_bvh.h"
 #include "lights/light_table.h"
+#include "materials/coverage.h"
 #include "materials/kernel_materials.h"
 #include "plan/plan.h"
 #include "wavefront/kernel_api.h"
@@ -24,6 +25,7 @@ struct KernelSceneData {
   std::optional<FacetsInDouble> edges;        ///< of a list
   std::optional<WideBvh> bvh;                 ///< of a tree
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
+  Coverage coverage;
   KernelMaterials materials;
   LightTable lights;
   KernelScene view{};

@@ -34,7 +34,7 @@ CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t ve
     const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
     const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;
-    const Segment traced = to_trace(Geometry(c.scene.geometry), lights, segment, p, normal);
+    const Segment traced = to_trace(geometry_of<Geometry>(c), lights, segment, p, normal);
     compress_store(out.o, n, lit, traced.o);
     compress_store(out.d, n, lit, traced.d);
     compress_store(out.radiance, n, lit, radiance);

@@ -11,7 +11,7 @@ template <class Geometry, uint32_t features>
 CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
                                  void* scratch, TileResult& result) {
   Scratch& s = *static_cast<Scratch*>(scratch);
-  Context c{scene, options, job, s.ends};
+  Context c{scene, options, job, s.ends, world_key(options, job.sample)};
   s.ends.fill();
   s.radiance.clear();
   place_pixels(c, result);

@@ -21,6 +21,12 @@ CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
   return lane(with_epoch(Uint(key), c.job.sample), 0);
 }
 
+/// The world of a sample (see PartialTriangles), one for all its pixels: in one world all visibilities are
+/// fixed, so that the balance heuristic over shared paths holds in it as in any scene, and so on average.
+CASTRAY_INLINE uint32_t world_key(const KernelOptions& options, uint64_t sample) {
+  return hash_once(hash_once(hash_once(options.seed, 0x3057u), (uint32_t)sample), (uint32_t)(sample >> 32));
+}
+
 /// Sequence indices of `count` (a power of two) items that a tile shares. Each sample takes the next
 /// `count` indices, in a random order of its own.
 CASTRAY_INLINE Uint tile_index(uint32_t key, uint64_t sample, Uint item, uint32_t count) {

@@ -42,7 +42,7 @@ template <class Geometry, uint32_t features, bool keep_misses>
 CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
                             Vertices& out, Radiance& radiance) {
   const KernelScene& scene = c.scene;
-  const Geometry geometry(scene.geometry);
+  const Geometry geometry = geometry_of<Geometry>(c);
   out.count = 0;
   for (int i = 0; i < paths.count; i += width) {
     const Mask active = first_lanes(paths.count - i);

@@ -9,19 +9,18 @@ namespace castray::CASTRAY_ISA {
 template <class Geometry>
 CASTRAY_INLINE void closest(Context& c, const Paths& paths, bool from_camera, Hits& hits) {
   c.rays += (uint64_t)paths.count;
-  Geometry(c.scene.geometry)
-      .closest({paths.o.x, paths.o.y, paths.o.z, paths.d.x, paths.d.y, paths.d.z, c.ends.infinite, hits.t,
-                hits.primitive, hits.b1, hits.b2, (uint32_t)paths.count},
-               from_camera);
+  geometry_of<Geometry>(c).closest(
+      {paths.o.x, paths.o.y, paths.o.z, paths.d.x, paths.d.y, paths.d.z, c.ends.infinite, hits.t,
+       hits.primitive, hits.b1, hits.b2, (uint32_t)paths.count},
+      from_camera);
 }
 
 /// Adds the radiance of unoccluded shadow rays.
 template <class Geometry>
 CASTRAY_INLINE void add_unblocked(Context& c, ShadowRays& rays, Radiance& radiance) {
   c.rays += (uint64_t)rays.count;
-  Geometry(c.scene.geometry)
-      .occluded({rays.o.x, rays.o.y, rays.o.z, rays.d.x, rays.d.y, rays.d.z, c.ends.one, rays.blocked,
-                 (uint32_t)rays.count});
+  geometry_of<Geometry>(c).occluded({rays.o.x, rays.o.y, rays.o.z, rays.d.x, rays.d.y, rays.d.z, c.ends.one,
+                                     rays.blocked, (uint32_t)rays.count});
   for (int i = 0; i < rays.count; ++i) {
     if (rays.blocked[i]) continue;
     radiance.x[rays.slot[i]] += rays.radiance.x[i];

@@ -22,7 +22,7 @@ CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
 template <class Geometry>
 CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, VisibilityScratch& s,
                                  bool weights, Transfer& t) {
-  const Geometry geometry(c.scene.geometry);
+  const Geometry geometry = geometry_of<Geometry>(c);
   int n = 0;
   for (int i = 0; i < tile_vectors; ++i) {
     const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
@@ -50,7 +50,7 @@ CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, V
                                  Transfer& t) {
   constexpr bool weights = features & feature_materials;
   constexpr int corners = Geometry::blocker_corners;
-  if (!Geometry(c.scene.geometry).make_shaft(y.p, tile.boxes.all, tile.budget, s.shaft))
+  if (!geometry_of<Geometry>(c).make_shaft(y.p, tile.boxes.all, tile.budget, s.shaft))
     return hide_by_rays<Geometry>(c, y, tile, s, weights, t);
   if (s.shaft.count == 0) return;
   const bool choose = Geometry::has_many_blockers && s.shaft.count > few_pyramids;

@@ -1,0 +1,31 @@
+#include "materials/coverage.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "core/contract.h"
+#include "materials/surface_values.h"
+
+namespace castray {
+
+Coverage::Coverage(const Scene& scene) : scene_(scene) {
+  if (std::ranges::none_of(scene.materials, &Material::may_have_holes)) return;
+  partial_.resize((scene.triangles.size() + 31) / 32);
+  for (std::uint32_t i = 0; i < scene.triangles.size(); ++i)
+    if (scene.material_of(i).may_have_holes()) partial_[i / 32] |= 1u << (i % 32);
+}
+
+template <class T>
+bool Coverage::is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2) const {
+  const T coverage = coverage_at(scene_, TrianglePlace<T>{triangle, b1, b2});
+  if (coverage >= 1) return true;
+  if (!(coverage > 0)) return false;
+  std::uint32_t key = hash_combine(world, triangle);
+  for (const T b : {b1, b2}) key = hash_combine(key, std::bit_cast<std::uint32_t>(static_cast<float>(b)));
+  return static_cast<T>(key >> 8) * T(0x1p-24) < coverage;
+}
+
+template bool Coverage::is_there(std::uint32_t, std::uint32_t, float, float) const;
+template bool Coverage::is_there(std::uint32_t, std::uint32_t, double, double) const;
+
+}  // namespace castray

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "castray/scene.h"
+
+namespace castray {
+
+/// What of a scene's surfaces is there, where their materials cover only a share of them
+/// (Material::coverage): stochastic transparency (Enderton, Sintorn, Shirley, Luebke 2010). Each point of a
+/// triangle is there in some worlds and not in others, with the probability of its coverage there; different
+/// points independently of each other. What a ray meets first is then a function of the ray and the world,
+/// whatever the order of its tests. As no path meets a point twice, the mean over worlds is light that is
+/// thinned by 1 - coverage at each crossing.
+class Coverage {
+ public:
+  /// The scene must outlive this.
+  explicit Coverage(const Scene& scene);
+
+  /// A bit for each triangle, the lowest first: whether its coverage may be below 1. Null: no triangle's.
+  const std::uint32_t* partial_triangles() const { return partial_.empty() ? nullptr : partial_.data(); }
+
+  bool is_partial(std::uint32_t triangle) const {
+    return !partial_.empty() && (partial_[triangle / 32] >> (triangle % 32) & 1u);
+  }
+
+  /// Whether the point at barycentrics b1, b2 is there.
+  template <class T>
+  bool is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2) const;
+
+ private:
+  const Scene& scene_;
+  std::vector<std::uint32_t> partial_;
+};
+
+}  // namespace castray
