@@ -40,6 +40,7 @@ struct RenderStats {
   std::vector<std::string> skipped;        ///< features the scene does not need
   std::string accel_summary;               ///< e.g. "BVH: 32 triangles, 19 nodes, depth 5, ..."
   double bvh_seconds = 0;                  ///< to build the tree, however often it is rendered
+  double pilot_seconds = 0;                ///< of render_seconds: to decide whether paths are shared
   double render_seconds = 0;               ///< from the first camera ray to the last film sum
   std::uint64_t paths = 0;                 ///< camera samples
   std::uint64_t rays = 0;                  ///< closest-hit and shadow rays traced

@@ -148,6 +148,7 @@ std::string RenderReport::json() const {
                                    {"lights", scene.lights.size()},
                                    {"load_seconds", load_seconds},
                                    {"bvh_seconds", s.bvh_seconds},
+                                   {"pilot_seconds", s.pilot_seconds},
                                    {"render_seconds", s.render_seconds},
                                    {"total_seconds", total_seconds},
                                    {"paths", s.paths},

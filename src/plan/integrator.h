@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "castray/render.h"
@@ -36,7 +37,9 @@ class PreparedIntegrator {
   /// The work of one render. `job`, whose shaping options are those of the preparation, and this object must
   /// outlive it.
   virtual BandWork work(const Job& job) const = 0;
-  /// Fills in instruction set, kernel, what is not needed, and the tree.
+  /// What was decided for the scene and changes samples, as items of the film key, each after "; ".
+  virtual std::string decisions() const { return {}; }
+  /// Fills in instruction set, kernel, what is not needed, the tree, and the seconds of the pilot.
   virtual void describe(RenderStats& stats) const = 0;
 };
 

@@ -30,6 +30,27 @@ const char* misfit(const Job& job, const Job& prepared) {
   return nullptr;
 }
 
+/// `render`, but for the seconds of the pilot.
+RenderResult render_samples(const PreparedScene& scene, const RenderOptions& options,
+                            const ProgressCallback& progress, const Film* start) {
+  const PreparedAccess::Data& prepared = PreparedAccess::data(scene);
+  Job job = make_job(prepared.facts, options, prepared.job.fault);
+  if (const char* option = misfit(job, prepared.job))
+    throw InputError(fmt::format("{}: the scene was prepared for another one; prepare it anew", option));
+  if (options.target_error && start)
+    throw InputError("--target-error: cannot go on from an earlier film; leave out the target or the film");
+  job.key += prepared.integrator->decisions();
+  RenderResult result = take_samples(job, progress, start, prepared.integrator->work(job));
+  prepared.integrator->describe(result.stats);
+  return result;
+}
+
+/// The pilot ran once, before the first camera ray of the image.
+RenderResult with_pilot(RenderResult result) {
+  result.stats.render_seconds += result.stats.pilot_seconds;
+  return result;
+}
+
 SampleRange first_range(const RenderOptions& options, std::uint64_t replicates) {
   if (options.samples) return *options.samples;
   if (options.spp % replicates != 0)
@@ -42,15 +63,7 @@ SampleRange first_range(const RenderOptions& options, std::uint64_t replicates) 
 
 RenderResult render(const PreparedScene& scene, const RenderOptions& options,
                     const ProgressCallback& progress, const Film* start) {
-  const PreparedAccess::Data& prepared = PreparedAccess::data(scene);
-  const Job job = make_job(prepared.facts, options, prepared.job.fault);
-  if (const char* option = misfit(job, prepared.job))
-    throw InputError(fmt::format("{}: the scene was prepared for another one; prepare it anew", option));
-  if (options.target_error && start)
-    throw InputError("--target-error: cannot go on from an earlier film; leave out the target or the film");
-  RenderResult result = take_samples(job, progress, start, prepared.integrator->work(job));
-  prepared.integrator->describe(result.stats);
-  return result;
+  return with_pilot(render_samples(scene, options, progress, start));
 }
 
 RenderResult render(const Scene& scene, const RenderOptions& options, const ProgressCallback& progress,
@@ -67,10 +80,11 @@ RenderResult render_replicates(const PreparedScene& scene, const RenderOptions& 
   for (std::uint64_t r = 0; r < replicates; ++r) {
     RenderOptions part_options = options;
     part_options.samples = SampleRange{range.first + r * replicate_length, range.count};
-    RenderResult part = render(scene, part_options, [&](const Progress& p) {
+    const auto report = [&](const Progress& p) {
       const double fraction = (static_cast<double>(r) + p.fraction) / static_cast<double>(replicates);
       return !progress || progress({fraction, whole.stats.paths + p.paths, nullptr});
-    });
+    };
+    RenderResult part = render_samples(scene, part_options, report, nullptr);
     part.film.keep_replicates();
     add_stats(part.stats, whole.stats);
     whole.stats = part.stats;
@@ -80,7 +94,7 @@ RenderResult render_replicates(const PreparedScene& scene, const RenderOptions& 
       whole.film.merge(part.film);
     if (part.stats.stopped != Stopped::done) break;
   }
-  return whole;
+  return with_pilot(std::move(whole));
 }
 
 RenderResult render_replicates(const Scene& scene, const RenderOptions& options, std::uint64_t replicates,

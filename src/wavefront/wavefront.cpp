@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -224,7 +225,11 @@ class Wavefront final : public PreparedIntegrator {
                    RowStats& stats) { run->render_band((y0 - top) / tile_size, samples, map, film, stats); }};
   }
 
+  /// Instruction sets count rays differently in the last digit, so a near tie may fall either way.
+  std::string decisions() const override { return plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off"; }
+
   void describe(RenderStats& stats) const override {
+    stats.pilot_seconds = pilot_seconds_;
     stats.isa = kernel_.name;
     stats.kernel = plan_.kernel;
     stats.skipped = plan_.skipped;
@@ -235,6 +240,7 @@ class Wavefront final : public PreparedIntegrator {
  private:
   /// Keeps shared paths unless a pilot says that plain ones do better.
   void settle_sharing(const Job& job) {
+    const auto begin = std::chrono::steady_clock::now();
     std::vector<Workplace> workplaces;
     for (int i = 0; i < job.threads; ++i) workplaces.emplace_back(kernel_);
     const RenderTiles render_tiles = kernel_.render_tiles[plan_.features];
@@ -245,6 +251,7 @@ class Wavefront final : public PreparedIntegrator {
           render_tiles(data_.view, options, tile, scratch, result);
         });
     if (gain) choose_by_pilot(plan_, *gain);
+    pilot_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
   std::string accel_summary() const {
@@ -257,6 +264,7 @@ class Wavefront final : public PreparedIntegrator {
   const KernelApi& kernel_;
   std::size_t triangles_;
   KernelSceneData data_;
+  double pilot_seconds_ = 0;
 };
 
 }  // namespace

@@ -126,7 +126,9 @@ def check_heat_map(page):
 def check_rest(page):
     page.keyboard.press("j")  # z.pfm, which has no picture
     page.locator("summary").nth(2).click()
-    page.wait_for_selector("details:nth-of-type(3) [data-ready=yes]")
+    thumbnail = page.locator("details:nth-of-type(3) .thumbnail")  # a.pfm, which passes
+    thumbnail.wait_for()
+    assert thumbnail.evaluate("image => image.naturalWidth") == WIDTH and page.locator("canvas").count() == 1
     commands = page.locator(".command code").all_inner_texts()
     assert "castray accept image/m.pfm reference/m.pfm" in commands, commands
     row = page.locator("tr.exceeds").first.inner_text()

@@ -6,7 +6,7 @@
 
 #include "integrators.h"
 #include "materials/texture.h"
-#include "reference_images.h"
+#include "render_blocks.h"
 #include "statistics.h"
 #include "test_scenes.h"
 
@@ -17,19 +17,7 @@ using namespace castray::test;
 
 namespace {
 
-constexpr int side = 24, block = 4;
-using Blocks = std::vector<std::vector<double>>;
-
-Blocks blocks_of(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
-  Blocks blocks;
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    options.seed = 1000 + seed;
-    const RenderResult result = render(scene, options);
-    REQUIRE(result.film.nonfinite_samples == 0);
-    blocks.push_back(block_means(result.film.image(), block));
-  }
-  return blocks;
-}
+constexpr int side = 24;
 
 RenderOptions reference_in_double(std::uint64_t spp) {
   RenderOptions options = reference_options(side, side, spp);

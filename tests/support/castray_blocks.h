@@ -6,31 +6,17 @@
 #include <vector>
 
 #include "castray/render.h"
-#include "reference_images.h"
+#include "render_blocks.h"
 #include "test_scenes.h"
 
 // Renders of the wavefront against castRay in double precision, block by block.
 
 namespace castray::test {
 
-inline constexpr int side = 32, block = 4;
+inline constexpr int side = 32;
 
 inline RenderOptions wavefront_options(std::uint64_t spp, std::uint64_t seed = 1) {
   return wavefront_options(side, spp, seed);
-}
-
-using Blocks = std::vector<std::vector<double>>;
-
-/// Block means of renders with independent seeds.
-inline Blocks blocks_of(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
-  Blocks blocks;
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    options.seed = 1000 + seed;
-    const RenderResult result = render(scene, options);
-    REQUIRE(result.film.nonfinite_samples == 0);
-    blocks.push_back(block_means(result.film.image(), block));
-  }
-  return blocks;
 }
 
 inline RenderOptions as_reference(RenderOptions options) {

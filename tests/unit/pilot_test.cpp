@@ -93,6 +93,12 @@ TEST_CASE("outdoors paths are plain by default, in the box they are shared, what
   const Scene sky = standard_scene("kinds/sky_and_ground"), box = standard_scene("cornell_box");
   CHECK(pixels(sky, options) == pixels(sky, plain));
   CHECK(pixels(box, options) == pixels(box, shared));
+  const RenderResult outdoors = render(sky, options);
+  CHECK_THAT(outdoors.film.key, Catch::EndsWith("sharing=off"));
+  CHECK_THAT(render(box, options).film.key, Catch::EndsWith("sharing=on"));
+  CHECK(outdoors.stats.pilot_seconds > 0);
+  CHECK(outdoors.stats.render_seconds > outdoors.stats.pilot_seconds);
+  CHECK(render(sky, plain).stats.pilot_seconds == 0);
   for (RenderOptions* o : {&options, &plain}) {
     o->crop = Window{.x0 = 20, .y0 = 30, .x1 = 33, .y1 = 41};
     o->samples = SampleRange{5, 1};

@@ -4,8 +4,7 @@
 #include <thread>
 
 #include "castray/error.h"
-#include "core/files.h"
-#include "temporary_folder.h"
+#include "film_bytes.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -22,12 +21,6 @@ RenderOptions options_of(Integrator integrator) {
   options.spp = 3;
   options.integrator = integrator;
   return options;
-}
-
-std::string bytes(const Film& film) {
-  const TemporaryFolder folder;
-  write_film(folder / "x.film", film);
-  return read_file(folder / "x.film");
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "castray/error.h"
-#include "core/files.h"
-#include "temporary_folder.h"
+#include "film_bytes.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -19,12 +18,6 @@ RenderOptions options_of(std::uint64_t spp) {
   RenderOptions options = reference_options(side, side, spp);
   options.sampler = SamplerKind::sobol;
   return options;
-}
-
-std::string bytes(const Film& film) {
-  const TemporaryFolder folder;
-  write_film(folder / "x.film", film);
-  return read_file(folder / "x.film");
 }
 
 }  // namespace
