@@ -69,6 +69,7 @@ def check_order(page):
 
 def check_swipe(page):
     assert colour(page, 10, 5)[0] == 255 and colour(page, 50, 5)[0] == 0  # image left, reference right
+    assert colour(page, WIDTH - 1, HEIGHT - 1) == [0, 0, 137, 255]
     set_slider(page, "swipe", 10)
     assert colour(page, 10, 5)[0] == 0
     page.locator(".stage").first.focus()
