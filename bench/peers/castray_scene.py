@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -56,13 +57,18 @@ class Scene:
         return sum(len(mesh.triangles) for mesh in self.meshes if mesh.material.emits)
 
     def refuse(self, peer, types=()):
-        """Stops where the peer has no equal of what the scene asks for."""
+        """Stops, with the exit code that tells `castray bench` so, where the peer has no equal of what the scene asks for."""
         for mesh in self.meshes:
             material = mesh.material
             if material.type in types:
-                raise SystemExit(f"{peer}: material '{material.name}': no equal of '{material.type}'")
+                no_equal(f"{peer}: material '{material.name}': no equal of '{material.type}'")
             if material.emits and material.two_sided_emission:
-                raise SystemExit(f"{peer}: material '{material.name}': no equal of two-sided emission")
+                no_equal(f"{peer}: material '{material.name}': no equal of two-sided emission")
+
+
+def no_equal(message):
+    print(message, file=sys.stderr)
+    raise SystemExit(77)
 
 
 def read_commented_json(path):

@@ -75,6 +75,8 @@ class Measurement {
       const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
       costs_[c].seconds_per_spp = std::max(rendering.seconds, 1e-6) / static_cast<double>(spp);
       costs_[c].overhead = std::max(0.0, all.count() - rendering.seconds);
+    } catch (const NoEqual& error) {
+      scene_.curves[c].failure = error.what();
     } catch (const InputError& error) {
       if (contenders_[c].kind != ContenderKind::ablation) throw;
       scene_.curves[c].failure = error.what();

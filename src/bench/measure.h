@@ -8,6 +8,7 @@
 
 #include "bench/noise_free.h"
 #include "bench/report.h"
+#include "castray/error.h"
 
 namespace castray {
 
@@ -17,7 +18,14 @@ struct Rendering {
   std::optional<double> process_seconds;  ///< of the whole process, if it was one
 };
 
-/// Something that renders the scene at hand. `render` throws InputError if it cannot.
+/// A contender has no equal of something in the scene: it is left out there, and the reports say why.
+class NoEqual : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Something that renders the scene at hand. `render` throws NoEqual if the scene is not for it, else
+/// InputError if it fails.
 struct Contender {
   std::string name;
   ContenderKind kind = ContenderKind::configuration;

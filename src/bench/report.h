@@ -43,8 +43,9 @@ enum class ContenderKind : std::uint8_t { configuration, ablation, peer };
 struct BenchCurve {
   std::string name;
   ContenderKind kind = ContenderKind::configuration;
-  std::string detail;   ///< flags, or the peer's command
-  std::string failure;  ///< why there are no points: an ablation that the scene does not allow
+  std::string detail;  ///< flags, or the peer's command
+  std::string
+      failure;  ///< why there are no points: the scene does not allow the ablation, or is not for the peer
   std::vector<BenchPoint> points;
   std::optional<PowerLaw> fit;
   std::optional<EqualTimeRun> equal_time;

@@ -29,6 +29,7 @@ std::string points_table(const BenchScene& scene) {
       text += fmt::format("  {:<26} {:>7} {:>9.3g} {:>9} {:>10.3g} {:>10.3g} {:>11.4g}\n", curve.name,
                           point.spp, point.seconds, seconds_text(point.process_seconds), point.relmse,
                           point.mse, point.efficiency);
+    if (!curve.failure.empty()) text += fmt::format("  {:<26} not here: {}\n", curve.name, curve.failure);
   }
   return text;
 }

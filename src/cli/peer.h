@@ -17,7 +17,7 @@ struct Peer {
 
 /// Renders by the peer's command: {scene}, {spp}, {seed}, {out}, {width}, {height} and {threads} are filled
 /// in; the command writes linear radiance to {out}, a .pfm, and prints "seconds: X", the time of the render
-/// alone.
+/// alone. With exit code 77 it says that the scene has something it has no equal of.
 Contender peer_contender(const Peer& peer, const std::filesystem::path& scene, int width, int height,
                          int threads);
 

@@ -85,6 +85,21 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
   CHECK_THAT(read_file(folder / "r.csv"), Contains("cornell_box,itself,peer,4,0.25,"));
 }
 
+TEST_CASE("bench leaves out a peer that has no equal of what a scene holds") {
+  const TemporaryFolder folder;
+  const RunResult result =
+      run_castray(small_bench({"--config", "plain=--integrator reference", "--peer",
+                               "other=echo no fog {scene} {spp} {out} >&2; exit 77", "--json", "r.json"}),
+                  folder.path());
+  CAPTURE(result.err);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.out, Contains("not here: peer other: no fog"));
+  const auto curves = nlohmann::json::parse(read_file(folder / "r.json"))["scenes"][0]["curves"];
+  CHECK(curves[0]["points"].size() == 2);
+  CHECK(curves[1]["points"].empty());
+  CHECK_THAT(curves[1]["failure"].get<std::string>(), Contains("no fog"));
+}
+
 TEST_CASE("bench keeps the references it made, and takes given ones") {
   const TemporaryFolder folder;
   REQUIRE(
