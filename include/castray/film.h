@@ -119,7 +119,11 @@ class Film {
 /// have.
 std::optional<Noise> noise_of(const Film& film);
 
-/// What a film says of itself, as PNG and EXR files hold it: scene, seed, spp and options.
+/// In what two film keys differ: "seed=0 against seed=4".
+std::string difference_of_keys(const std::string& a, const std::string& b);
+
+/// What a film says of itself, as PNG and EXR files hold it: scene and its hash, seed, spp, and options as
+/// flags of the command line.
 Metadata describe(const Film& film);
 
 /// Reads a .film file. Throws InputError if it is not one, is truncated or corrupt.

@@ -106,8 +106,8 @@ struct Scene {
 /// sides, than from another of ten directions: a room is looked into from its open side.
 Camera automatic_camera(const Scene& scene);
 
-/// Reads a scene .json or an .obj (seen by an automatic view). Throws InputError with the place of the first
-/// error.
+/// Reads a scene .json or an .obj (seen by an automatic view); "-" is one of them on the standard input.
+/// Throws InputError with the place of the first error.
 ///
 /// A mirroring transform (negative determinant) keeps each mesh's outward side outward: the counter-clockwise
 /// order of its triangles is turned round with it, so what emitted outwards still does.

@@ -56,7 +56,7 @@ int accept(const fs::path& image, const fs::path& reference) {
 
 }  // namespace
 
-Run add_accept(Arguments& arguments) {
+Run add_accept(Arguments& arguments, const CommonFlags&) {
   struct Files {
     fs::path image, reference;
   };

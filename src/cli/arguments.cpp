@@ -1,8 +1,12 @@
 #include "cli/arguments.h"
 
+#include <algorithm>
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
+
+#include "core/nearest.h"
+#include "core/text.h"
 
 namespace castray::cli {
 
@@ -16,19 +20,26 @@ Argument& Argument::group(const char* title) {
   return *this;
 }
 
+Argument& Argument::hidden() { return group(""); }
+
 Argument& Argument::separated_by(char separator) {
   option_->delimiter(separator);
   return *this;
 }
 
 Argument& Argument::one_of(std::initializer_list<std::string> values) {
-  option_->check(CLI::IsMember(values).description(""));
+  option_->check([known = std::vector<std::string>(values)](const std::string& text) {
+    if (std::find(known.begin(), known.end(), text) != known.end()) return std::string();
+    return "'" + printable(text) + "' is none of its values" + suggestion(text, {known.begin(), known.end()});
+  });
   return *this;
 }
 
 template <class T>
 Argument Arguments::add(const char* name, T& value, const char* metavar, const char* help) {
-  return Argument(*app_.add_option(name, value, help)->type_name(metavar)->allow_extra_args(false));
+  CLI::Option* option = app_.add_option(name, value, help)->type_name(metavar)->allow_extra_args(false);
+  if (option->get_items_expected_max() == 1) option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  return Argument(*option);
 }
 
 template <class T>
@@ -49,6 +60,8 @@ Argument Arguments::add_text(const std::string& name, const char* metavar, const
                        ->type_name(metavar)
                        ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast));
 }
+
+bool Arguments::has(const std::string& name) const { return app_.get_option_no_throw(name) != nullptr; }
 
 void Arguments::footer(const char* text) { app_.footer(text); }
 

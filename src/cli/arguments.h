@@ -16,6 +16,7 @@ class Argument {
   explicit Argument(CLI::Option& option) : option_(&option) {}
   Argument& required();
   Argument& group(const char* title);  ///< its section of the help
+  Argument& hidden();                  ///< left out of the help
   /// Several values may stand in one word, `separator` between them.
   Argument& separated_by(char separator);
   /// Other values are refused.
@@ -44,6 +45,8 @@ class Arguments {
   /// `take` is called with the last value given; of a switch, where metavar is null, with "on".
   Argument add_text(const std::string& name, const char* metavar, const char* help,
                     std::function<void(const std::string&)> take);
+  /// Whether a flag of this name was declared.
+  bool has(const std::string& name) const;
   /// What the help ends with.
   void footer(const char* text);
 

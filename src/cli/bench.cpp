@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <fstream>
+#include <limits>
 #include <memory>
 
 #include "bench/report.h"
@@ -38,9 +39,14 @@ std::string command_line() {
 }
 
 void check_flags(const BenchFlags& flags) {
-  if (flags.seeds < 1) throw InputError("--seeds: at least 1");
-  for (const std::uint64_t spp : flags.spp)
-    if (spp < 1) throw InputError("--spp: each budget must be at least 1");
+  const auto check_count = [](const char* flag, std::uint64_t count) {
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();  // below 0, CLI11 wraps round
+    if (count < 1 || count > most)
+      throw InputError(fmt::format("{}: must be a whole number between 1 and {}", flag, most));
+  };
+  check_count("--seeds", flags.seeds);
+  check_count("--reference-spp", flags.reference_spp);
+  for (const std::uint64_t spp : flags.spp) check_count("--spp", spp);
   for (const double seconds : flags.seconds)
     if (!(seconds > 0)) throw InputError("--seconds: each budget must be above 0");
   for (const std::string& peer : flags.peers) Peer::parse(peer);
@@ -71,9 +77,9 @@ int bench(const BenchFlags& flags, const std::string& command) {
 
 }  // namespace
 
-Run add_bench(Arguments& arguments) {
+Run add_bench(Arguments& arguments, const CommonFlags& common) {
   const auto flags = std::make_shared<BenchFlags>();
-  arguments.add_positional("scenes", flags->scenes, "scene files").required();
+  arguments.add_positional("SCENE", flags->scenes, "scene files").required();
   arguments.add("--config", flags->configurations, "NAME=FLAGS",
                 "castray with these rendering flags; repeatable [castray=]");
   arguments.add(
@@ -84,7 +90,7 @@ Run add_bench(Arguments& arguments) {
   arguments.add("--seconds", flags->seconds, "X,...", "budgets in seconds of rendering").separated_by(',');
   arguments.add("--seeds", flags->seeds, "N", "renders per budget; medians are shown [8]");
   arguments.add("--size", flags->size, "WxH", "in pixels [the references', else the scene's]");
-  arguments.add("--threads", flags->threads, "N", "of castray's own renders [all]");
+  arguments.add("-t,--threads", flags->threads, "N", "of castray's own renders [all]");
   arguments.add_switch("--ablation", flags->ablation, "also measure with each technique off in turn");
   arguments.add("--equal-time", flags->equal_time, "X",
                 "seconds for the pictures and FLIP [the slowest one's smallest budget]");
@@ -102,8 +108,8 @@ Run add_bench(Arguments& arguments) {
   arguments.add("--csv", flags->csv, "FILE", "write the medians here");
   arguments.add("--html", flags->html, "FILE", "write a self-contained page here");
   arguments.add("--svg", flags->svg, "FILE", "write the plots here");
-  arguments.add_switch("-q,--quiet", flags->quiet, "no progress");
-  return [flags] {
+  return [flags, &common] {
+    flags->quiet = common.quiet;
     if (flags->spp.empty() && flags->seconds.empty()) flags->spp = {4, 16, 64};
     if (flags->configurations.empty()) flags->configurations = {"castray="};
     return bench(*flags, command_line());

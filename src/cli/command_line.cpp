@@ -1,9 +1,13 @@
 #include "cli/command_line.h"
 
+#include <algorithm>
+#include <charconv>
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "castray/error.h"
+#include "cli/argument_forms.h"
 #include "cli/command_help.h"
 #include "core/nearest.h"
 #include "core/text.h"
@@ -15,7 +19,7 @@ namespace {
 struct Subcommand {
   const char* name;
   const char* description;
-  Run (*add)(Arguments&);
+  Run (*add)(Arguments&, const CommonFlags&);
 };
 
 constexpr Subcommand subcommands[] = {
@@ -35,11 +39,15 @@ std::shared_ptr<CLI::App> make_app(Run& chosen) {
   const auto app =
       std::make_shared<CLI::App>("castray renders triangle scenes by path tracing on the CPU.", "castray");
   app->set_version_flag("--version", "castray " CASTRAY_VERSION);
+  app->footer("'castray help COMMAND' lists the flags of a command.");
   app->require_subcommand(1);
   for (const Subcommand& subcommand : subcommands) {
     CLI::App* sub = app->add_subcommand(subcommand.name, subcommand.description);
     Arguments arguments(*sub);
-    sub->callback([run = subcommand.add(arguments), &chosen] { chosen = run; });
+    const auto common = std::make_shared<CommonFlags>();
+    const Run run = subcommand.add(arguments, *common);
+    common->add_to(arguments);
+    sub->callback([run, common, &chosen] { chosen = [run, common] { return run(); }; });
   }
   return app;
 }
@@ -82,27 +90,70 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// The name that CLI11's message begins with, and what stands for its value in the help.
+struct NamedOption {
+  std::string name;
+  const CLI::Option* option;
+
+  NamedOption(const CLI::App& app, std::string_view message, std::string_view end)
+      : name(message.substr(0, message.find(end))), option(app.get_option_no_throw(name)) {}
+  std::string value() const { return option ? option->get_type_name() : ""; }
+  bool is_switch() const { return option && option->get_items_expected_max() == 0; }
+};
+
+std::string explain_missing(const CLI::App& app, const std::string& message) {
+  const NamedOption missing(app, message, " is required");
+  return missing.name + (missing.value().empty() ? "" : " " + missing.value()) + " is missing; see castray " +
+         app.get_name() + " --help";
+}
+
+std::string explain_no_value(const CLI::App& app, const std::string& message) {
+  const NamedOption flag(app, message, ":");
+  return flag.name + ": needs a value, " + flag.value();
+}
+
+/// Of "Could not convert: --name = text".
+std::string explain_conversion(const CLI::App& app, std::string_view message) {
+  constexpr std::string_view before = "Could not convert: ", between = " = ";
+  if (message.starts_with(before)) message.remove_prefix(before.size());
+  const std::size_t equals = message.find(between);
+  if (equals == message.npos) return one_line(std::string(message));
+  const NamedOption flag(app, message, between);
+  const std::string text(message.substr(equals + between.size()));
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size();
+  return flag.name + " '" + printable(text) + "': must be " +
+         (flag.is_switch() ? "on or off, or left out"
+          : is_number      ? "a whole number"
+                           : "a number");
+}
+
+/// The name of the first word that is not known.
+std::optional<std::string> explain_unknown(const CLI::App& app, const CLI::App& at) {
+  for (const CLI::App* candidate : {&app, &at})
+    for (const std::string& argument : candidate->remaining())
+      if (argument != "--") return unknown(at, argument);
+  return std::nullopt;
+}
+
+std::string what_to_do(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
+    names += (names.empty() ? "" : ", ") + sub->get_name();
+  return "say what to do: " + names + "; see castray --help";
+}
+
 /// One line that says what is wrong with the command line; an unknown flag or subcommand comes with the
 /// nearest known one.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> used = app.get_subcommands();
   const CLI::App& at = used.empty() ? app : *used.front();
-  for (const CLI::App* candidate : {&app, &at})
-    for (const std::string& argument : candidate->remaining())
-      if (argument != "--") return unknown(at, argument);
-  if (used.empty() && dynamic_cast<const CLI::RequiredError*>(&error)) {
-    std::string names;
-    for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-      names += (names.empty() ? "" : ", ") + sub->get_name();
-    return "say what to do: " + names + "; see castray --help";
-  }
-  if (dynamic_cast<const CLI::ConversionError*>(&error))
-    if (const std::string text = error.what(); text.find(" = ") != std::string::npos) {
-      constexpr std::string_view before = "Could not convert: ";
-      const std::size_t begin = text.starts_with(before) ? before.size() : 0, equals = text.find(" = ");
-      return text.substr(begin, equals - begin) + " '" + printable(text.substr(equals + 3)) +
-             "': must be a number";
-    }
+  if (const auto text = explain_unknown(app, at)) return *text;
+  if (dynamic_cast<const CLI::RequiredError*>(&error))
+    return used.empty() ? what_to_do(app) : explain_missing(at, error.what());
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return explain_no_value(at, error.what());
+  if (dynamic_cast<const CLI::ConversionError*>(&error)) return explain_conversion(at, error.what());
   return one_line(error.what());
 }
 
@@ -112,8 +163,11 @@ Run parse_command_line(int argc, const char* const* argv) {
   Run chosen;
   const auto app = make_app(chosen);
   try {
-    app->parse(argc, argv);
+    std::vector<std::string> words = plain_arguments({argv + std::min(argc, 1), argv + argc});
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    app->parse(std::move(words));
   } catch (const CLI::Success& help) {
+    if (const auto text = explain_unknown(*app, *app)) throw InputError(*text);
     return [app, help] { return app->exit(help); };
   } catch (const CLI::ParseError& error) {
     throw InputError(explain(*app, error));
@@ -128,7 +182,8 @@ std::vector<CommandHelp> command_helps() {
   for (const CLI::App* sub : app->get_subcommands([](const CLI::App*) { return true; })) {
     commands.push_back({sub->get_name(), sub->get_description(), sub->get_footer(), {}});
     for (const CLI::Option* option : sub->get_options())
-      if (option != sub->get_help_ptr()) commands.back().flags.push_back(help_of(*option));
+      if (option != sub->get_help_ptr() && !option->get_group().empty())
+        commands.back().flags.push_back(help_of(*option));
   }
   return commands;
 }

@@ -29,15 +29,16 @@ struct Compare {
   std::string layer;
   fs::path limits_file, json, junit, html, heat_map_file;
 
-  int run() const {
+  int run(const CommonFlags& common) const {
     const LimitsFile limits = all_limits();
     const Viewing viewing{flags.display(), !flags.tone.empty(), layer};
+    if (!common.quiet) warn_of_darkening(viewing.display.tone);
     const bool folders = fs::is_directory(image);
     check_inputs(folders);
     check_outputs(folders);
     const std::vector<Comparison> comparisons =
-        folders ? compare_folders(limits, viewing) : compare_one(limits, viewing);
-    write_reports(comparisons, folders);
+        folders ? compare_folders(limits, viewing, common.quiet) : compare_one(limits, viewing);
+    write_reports(comparisons, folders, common.verbose);
     if (std::any_of(comparisons.begin(), comparisons.end(), [](const auto& c) { return !c.error.empty(); }))
       return 2;
     return std::all_of(comparisons.begin(), comparisons.end(), [](const auto& c) { return c.pass(); }) ? 0
@@ -59,17 +60,18 @@ struct Compare {
   void check_outputs(bool folders) const {
     if (folders && !heat_map_file.empty())
       throw InputError("--heatmap: draws one pair of images; use --html for folders");
+    check_one_standard_output({json, junit, html, heat_map_file});
     for (const fs::path& output : {json, junit, html})
       if (!output.empty()) check_writable(output);
     if (!heat_map_file.empty()) check_output_image(heat_map_file);
   }
 
   /// The table goes where no file goes: to stderr if stdout was asked for as a file.
-  void write_reports(const std::vector<Comparison>& comparisons, bool folders) const {
+  void write_reports(const std::vector<Comparison>& comparisons, bool folders, bool verbose) const {
     const auto is_stdout = [](const fs::path& file) { return is_standard_output(file); };
     const fs::path outputs[] = {json, junit, html, heat_map_file};
     const bool taken = std::any_of(std::begin(outputs), std::end(outputs), is_stdout);
-    fmt::print(taken ? stderr : stdout, "{}", text_report(comparisons));
+    fmt::print(taken ? stderr : stdout, "{}", text_report(comparisons, verbose));
     if (folders) print_sizes(taken ? stderr : stdout);
     if (!json.empty()) write_file(json, json_report(comparisons, folders));
     if (!junit.empty()) write_file(junit, junit_report(comparisons));
@@ -101,7 +103,8 @@ struct Compare {
     return {std::move(comparison)};
   }
 
-  std::vector<Comparison> compare_folders(const LimitsFile& limits, const Viewing& viewing) const {
+  std::vector<Comparison> compare_folders(const LimitsFile& limits, const Viewing& viewing,
+                                          bool quiet) const {
     std::set<std::string> names = images_below(reference);
     names.merge(images_below(image));
     for (const auto& [name, own] : limits.by_name)
@@ -112,6 +115,7 @@ struct Compare {
     std::vector<Comparison> comparisons;
     for (const std::string& name : names) {
       comparisons.push_back(compare_files(name, image / name, reference / name, limits.of(name), viewing));
+      if (quiet) continue;
       fmt::print(stderr, "compared {} of {}: {}\n", comparisons.size(), names.size(), name);
     }
     return comparisons;
@@ -142,7 +146,7 @@ struct Compare {
 
 }  // namespace
 
-Run add_compare(Arguments& arguments) {
+Run add_compare(Arguments& arguments, const CommonFlags& common) {
   auto c = std::make_shared<Compare>();
   arguments
       .add_positional(
@@ -168,7 +172,7 @@ Run add_compare(Arguments& arguments) {
   arguments.add("--layer", c->layer, "NAME", layer_help);
   c->flags.add_to(arguments);
   arguments.footer("Exits with 0 within the limits, 1 if not, 2 if an image cannot be compared.");
-  return [c] { return c->run(); };
+  return [c, &common] { return c->run(common); };
 }
 
 }  // namespace castray::cli

@@ -58,9 +58,13 @@ std::string table(const Comparison& c) {
     if (check.name == "allow-pixels" || check.name == "ztest")
       text += fmt::format("  {:<12}  {}: {}\n", check.name, check.pass ? "within" : "EXCEEDS", check.said);
   text += notes_of(c, "  note: ");
-  if (c.checks.empty()) text += not_judged;
   if (!c.checks.empty()) text += c.pass() ? "within the limits\n" : "NOT within the limits\n";
   return text;
+}
+
+bool judged(const std::vector<Comparison>& comparisons) {
+  return std::any_of(comparisons.begin(), comparisons.end(),
+                     [](const Comparison& c) { return !c.checks.empty(); });
 }
 
 json to_json(const Comparison& c) {
@@ -124,9 +128,13 @@ std::string xml(const std::string& text) {
 
 }  // namespace
 
-std::string text_report(const std::vector<Comparison>& comparisons) {
-  if (comparisons.size() == 1) return table(comparisons.front());
+std::string text_report(const std::vector<Comparison>& comparisons, bool all_tables) {
+  if (comparisons.size() == 1 && comparisons.front().error.empty())
+    return table(comparisons.front()) + (judged(comparisons) ? "" : not_judged);
   std::string text;
+  if (all_tables)
+    for (const Comparison& c : comparisons)
+      if (c.error.empty()) text += table(c) + "\n";
   std::size_t passed = 0;
   for (const Comparison& c : comparisons) {
     passed += c.pass();
@@ -137,9 +145,7 @@ std::string text_report(const std::vector<Comparison>& comparisons) {
     const std::string why = complaint(c);
     text += (why.empty() ? "" : "  " + why) + "\n" + notes_of(c, "      note: ");
   }
-  if (std::all_of(comparisons.begin(), comparisons.end(),
-                  [](const Comparison& c) { return c.checks.empty(); }))
-    return text + not_judged;
+  if (!judged(comparisons)) return text + not_judged;
   return text + fmt::format("{} of {} images pass\n", passed, comparisons.size());
 }
 

@@ -7,8 +7,8 @@
 
 namespace castray::cli {
 
-/// For people: a table of metrics, limits and the verdict; for several images a line each.
-std::string text_report(const std::vector<Comparison>& comparisons);
+/// For people: a table of metrics, limits and the verdict; for several images a line each, and `all_tables`.
+std::string text_report(const std::vector<Comparison>& comparisons, bool all_tables);
 
 /// One comparison: the object that docs/compare.md describes; of folders: {"pass", "comparisons": [...]}.
 std::string json_report(const std::vector<Comparison>& comparisons, bool folders);

@@ -160,7 +160,7 @@ std::string fish_completion(const std::vector<CommandHelp>& commands) {
   return script;
 }
 
-Run add_completions(Arguments& arguments) {
+Run add_completions(Arguments& arguments, const CommonFlags&) {
   using Writer = std::string (*)(const std::vector<CommandHelp>&);
   static const std::map<std::string, Writer> writers = {
       {"bash", bash_completion}, {"fish", fish_completion}, {"man", manual_page}, {"zsh", zsh_completion}};

@@ -25,8 +25,10 @@ struct Convert {
       fmt::print(stderr, "castray: warning: {}: left out: {}\n", input.string(), fmt::join(left_out, ", "));
   }
 
-  int run() const {
+  int run(const CommonFlags& common) const {
     const Display display = flags.display();
+    if (!common.quiet) warn_of_darkening(display.tone);
+    check_one_standard_output(outputs);
     for (const auto& output : outputs) check_output_image(output);
     const bool any_encoded = std::any_of(outputs.begin(), outputs.end(), is_encoded_format);
     if (flags.exposure != 0 && !any_encoded)
@@ -38,22 +40,27 @@ struct Convert {
     if (is_film_format(input) && std::any_of(outputs.begin(), outputs.end(), is_film_format)) {
       const Film film = read_film(input);
       for (const auto& output : outputs) write_film(output, film, display);
-      return 0;
+      return tell_outputs(common);
     }
     const ImageFile file = read_image(input, layer);
-    warn_of_left_out(file);
+    if (!common.quiet) warn_of_left_out(file);
     const Image radiance = decoded(file, display.tone);
     for (const auto& output : outputs) {
-      warn_of_nonfinite(radiance, output);
+      if (!common.quiet) warn_of_nonfinite(radiance, output);
       write_image(output, radiance, display, file.metadata, file.noise);
     }
+    return tell_outputs(common);
+  }
+
+  int tell_outputs(const CommonFlags& common) const {
+    if (common.verbose) tell_written(outputs);
     return 0;
   }
 };
 
 }  // namespace
 
-Run add_convert(Arguments& arguments) {
+Run add_convert(Arguments& arguments, const CommonFlags& common) {
   auto convert = std::make_shared<Convert>();
   arguments
       .add_positional("IMAGE", convert->input,
@@ -63,7 +70,7 @@ Run add_convert(Arguments& arguments) {
   arguments.add("--layer", convert->layer, "NAME", layer_help);
   convert->flags.add_to(arguments);
   convert->flags.add_bits_to(arguments);
-  return [convert] { return convert->run(); };
+  return [convert, &common] { return convert->run(common); };
 }
 
 }  // namespace castray::cli

@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "castray/error.h"
 #include "cli/values.h"
+#include "core/files.h"
 
 namespace castray::cli {
 
@@ -22,25 +24,32 @@ bool parse_bits(const std::string& flag, const std::string& text) {
   return parse_choice<bool>(flag, text, {{"auto", false}, {"16", true}});
 }
 
-ToneCurve parse_tone(const std::string& text) {
-  const ToneCurve tone = parse_tone_curve(text);
+void warn_of_darkening(const ToneCurve& tone) {
   if (tone.kind == ToneCurve::Kind::gamma && tone.exponent > 1)
     fmt::print(stderr,
-               "castray: warning: --tone {}: value^{:g} darkens; a display of gamma {:g} is served by "
-               "gamma:{:.4g}\n",
-               text, tone.exponent, tone.exponent, 1 / tone.exponent);
-  return tone;
+               "castray: warning: --tone gamma:{0:g}: value^{0:g} darkens; a display of gamma {0:g} needs "
+               "gamma:{1:.4g}\n",
+               tone.exponent, 1 / tone.exponent);
 }
 
 Display DisplayFlags::display() const {
   if (!(std::abs(exposure) <= 100)) throw InputError("--exposure: give stops between -100 and 100");
-  return {tone.empty() ? ToneCurve{} : parse_tone(tone), exposure, parse_bits("bits", bits)};
+  return {tone.empty() ? ToneCurve{} : parse_tone_curve(tone), exposure, parse_bits("bits", bits)};
 }
 
 void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files) {
   arguments
       .add("-o,--output", files, "FILE", "write here; may be repeated; .ppm .png .pfm .hdr .exr or .film")
       .required();
+}
+
+void check_one_standard_output(const std::vector<std::filesystem::path>& files) {
+  if (std::count_if(files.begin(), files.end(), is_standard_output) > 1)
+    throw InputError("more than one output goes to the standard output; give the others names of files");
+}
+
+void tell_written(const std::vector<std::filesystem::path>& files) {
+  for (const auto& file : files) fmt::print(stderr, "wrote {}\n", file.string());
 }
 
 void warn_of_nonfinite(const Image& image, const std::filesystem::path& file) {

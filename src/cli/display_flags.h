@@ -23,8 +23,8 @@ struct DisplayFlags {
   Display display() const;
 };
 
-/// The value of --tone; says on stderr where it darkens.
-ToneCurve parse_tone(const std::string& text);
+/// Says on stderr where a curve darkens though its G, as a display's gamma, seems meant to brighten.
+void warn_of_darkening(const ToneCurve& tone);
 
 /// The value of --bits: whether files hold 16 bits a value.
 bool parse_bits(const std::string& flag, const std::string& text);
@@ -35,6 +35,12 @@ inline constexpr const char* layer_help = "of an EXR file with several layers, s
 
 /// -o FILE, repeatable and required.
 void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files);
+
+/// Throws InputError where more than one of the files is the standard output.
+void check_one_standard_output(const std::vector<std::filesystem::path>& files);
+
+/// Says on stderr which files were written.
+void tell_written(const std::vector<std::filesystem::path>& files);
 
 /// Says on stderr how many pixels of an image for display are not finite, and what is shown in their place.
 void warn_of_nonfinite(const Image& image, const std::filesystem::path& file);

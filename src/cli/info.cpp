@@ -96,7 +96,7 @@ void print_plan(const Scene& scene) {
   fmt::print("not needed {}\n", fmt::join(plan.skipped, ", "));
 }
 
-int print_info(const std::string& file) {
+void print_scene_info(const std::string& file, const CommonFlags& common) {
   const Scene scene = load_scene(file);
   fmt::print("scene      {}\n", file);
   print_geometry(scene);
@@ -105,21 +105,28 @@ int print_info(const std::string& file) {
   fmt::print("view       {}\n           {}\n", view_flags(scene), view_json(scene));
   print_materials(scene);
   print_plan(scene);
+  if (common.quiet) return;
   for (const std::string& key : scene.ignored_keys) fmt::print("ignored    {}\n", key);
   for (const SceneWarning& warning : scene.warnings)
     fmt::print("{}    {}\n", warning.harmless ? "note   " : "warning", warning.text());
   if (is_dark(scene)) fmt::print("warning    {}: {}\n", file, dark_scene);
-  return 0;
 }
 
 }  // namespace
 
-Run add_info(Arguments& arguments) {
-  const auto file = std::make_shared<std::string>();
-  arguments.add_positional("SCENE", *file, "scene .json or .obj; or an image or film").required();
-  return [file] {
-    if (!is_image_format(*file)) return print_info(*file);
-    print_image_info(*file);
+Run add_info(Arguments& arguments, const CommonFlags& common) {
+  const auto files = std::make_shared<std::vector<std::string>>();
+  arguments
+      .add_positional("FILE", *files, "scenes .json or .obj, - for one on the standard input; images; films")
+      .required();
+  return [files, &common] {
+    for (const std::string& file : *files) {
+      if (file != files->front()) fmt::print("\n");
+      if (file != "-" && is_image_format(file))
+        print_image_info(file);
+      else
+        print_scene_info(file, common);
+    }
     return 0;
   };
 }

@@ -13,8 +13,10 @@ struct Merge {
   std::vector<std::filesystem::path> inputs, outputs;
   DisplayFlags flags;
 
-  int run() const {
+  int run(const CommonFlags& common) const {
     const Display display = flags.display();
+    if (!common.quiet) warn_of_darkening(display.tone);
+    check_one_standard_output(outputs);
     for (const auto& output : outputs) check_output_image(output);
     Film whole = read_film(inputs.front());
     for (std::size_t i = 1; i < inputs.size(); ++i) {
@@ -27,20 +29,21 @@ struct Merge {
       }
     }
     for (const auto& output : outputs) write_film(output, whole, display, describe(whole));
+    if (common.verbose) tell_written(outputs);
     return 0;
   }
 };
 
 }  // namespace
 
-Run add_merge(Arguments& arguments) {
+Run add_merge(Arguments& arguments, const CommonFlags& common) {
   auto merge = std::make_shared<Merge>();
   arguments.add_positional("FILM", merge->inputs, "films of disjoint --samples ranges of one render")
       .required();
   add_outputs(arguments, merge->outputs);
   merge->flags.add_to(arguments);
   merge->flags.add_bits_to(arguments);
-  return [merge] { return merge->run(); };
+  return [merge, &common] { return merge->run(common); };
 }
 
 }  // namespace castray::cli

@@ -7,6 +7,7 @@
 #include "castray/error.h"
 #include "castray/film.h"
 #include "cli/commands.h"
+#include "cli/display_flags.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/render_flags.h"
@@ -29,14 +30,15 @@ struct RenderCommand {
   std::string scene;
   std::vector<std::string> outputs;
   std::vector<GivenFlag> given;
-  bool quiet = false, verbose = false;
 };
 
 void declare_flags(Arguments& arguments, RenderCommand& command) {
-  arguments.add_positional("scene", command.scene, "scene .json, or .obj").required();
+  arguments.add_positional("SCENE", command.scene, "scene .json, or .obj; - is a scene on the standard input")
+      .required();
   for (const RenderFlag& flag : render_flags())
     arguments
-        .add_text(std::string("--") + flag.name, flag.metavar, flag.help,
+        .add_text((flag.letter ? std::string{'-', flag.letter, ','} : "") + "--" + flag.name, flag.metavar,
+                  flag.help,
                   [&command, &flag](const std::string& value) {
                     command.given.push_back({&flag, value});
                   })
@@ -45,8 +47,6 @@ void declare_flags(Arguments& arguments, RenderCommand& command) {
       .add("-o,--output", command.outputs, "FILE",
            "image or film, repeatable; .ppm .png .pfm .hdr .exr .film [SCENE.png here]")
       .group("Output");
-  arguments.add_switch("-q", command.quiet, "say nothing but errors").group("Output");
-  arguments.add_switch("-v", command.verbose, "say more").group("Output");
 }
 
 bool is_given(const RenderCommand& command, std::string_view flag) {
@@ -54,15 +54,15 @@ bool is_given(const RenderCommand& command, std::string_view flag) {
                      [&](const GivenFlag& given) { return given.flag->name == flag; });
 }
 
-RenderRequest request_of(const RenderCommand& command, const Scene& scene) {
+RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene) {
   RenderRequest request;
   apply_defaults(request, scene);
   for (const GivenFlag& given : command.given) given.flag->set(request, given.flag->name, given.value);
   if (request.options.target_error && !is_given(command, "spp")) request.options.spp = most_samples_to_target;
   request.outputs.assign(command.outputs.begin(), command.outputs.end());
   if (request.outputs.empty()) request.outputs.push_back(scene.name + ".png");
-  request.quiet = command.quiet;
-  request.verbose = command.verbose;
+  request.quiet = common.quiet;
+  request.verbose = common.verbose;
   return request;
 }
 
@@ -77,6 +77,9 @@ void check(const RenderRequest& request) {
   if (request.checkpoint && request.options.target_error)
     throw InputError("--target-error: cannot go with --checkpoint; leave one out");
   for (const fs::path& output : request.outputs) check_output_image(output);
+  std::vector<fs::path> all = request.outputs;
+  if (request.stats) all.push_back(*request.stats);
+  check_one_standard_output(all);
   if (request.checkpoint && !is_film_format(*request.checkpoint))
     throw InputError(request.checkpoint->string() + ": a checkpoint's name must end in .film");
   if (request.checkpoint) check_output_image(*request.checkpoint);
@@ -123,16 +126,16 @@ int exit_code(const RenderRequest& request, Stopped stopped) {
   return as_asked ? 0 : 1;
 }
 
-int render_scene(const RenderCommand& command) {
+int render_scene(const RenderCommand& command, const CommonFlags& common) {
   const Clock::time_point begin = Clock::now();
   Scene scene = load_scene(command.scene);
-  RenderRequest request = request_of(command, scene);
+  RenderRequest request = request_of(command, common, scene);
   check(request);
   apply_flags(request, scene);
   RenderReport report{scene, request.options, command.given};
   report.tells_time = request.metadata_time;
   report.load_seconds = seconds_since(begin);
-  if (!request.quiet) report.print_scene(request.verbose);
+  if (!request.quiet) warn_of_darkening(request.display.tone), report.print_scene(request.verbose);
 
   report.result = render_watched(scene, request);
   report.total_seconds = seconds_since(begin);
@@ -146,13 +149,13 @@ int render_scene(const RenderCommand& command) {
 
 }  // namespace
 
-Run add_render(Arguments& arguments) {
+Run add_render(Arguments& arguments, const CommonFlags& common) {
   auto command = std::make_shared<RenderCommand>();
   declare_flags(arguments, *command);
   arguments.footer(
       "Exit codes: 0 done; 1 stopped by --time-limit or, short of --target-error, by --spp; 2 error; 130 "
       "interrupted (what was rendered is saved).");
-  return [command] { return render_scene(*command); };
+  return [command, &common] { return render_scene(*command, common); };
 }
 
 }  // namespace castray::cli

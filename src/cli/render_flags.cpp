@@ -10,6 +10,7 @@
 #include "core/files.h"
 #include "core/nearest.h"
 #include "core/text.h"
+#include "plan/option_names.h"
 #include "render/prepared_scene.h"
 
 namespace castray::cli {
@@ -26,11 +27,6 @@ constexpr std::string_view switch_values[] = {"on", "off"};
 
 bool parse_on_off(Text flag, Text text) {
   return parse_choice<bool>(flag, text, {{switch_values[0], true}, {switch_values[1], false}});
-}
-
-Switch parse_switch(Text flag, Text text) {
-  return parse_choice<Switch>(flag, text,
-                              {{"auto", Switch::automatic}, {"on", Switch::on}, {"off", Switch::off}});
 }
 
 std::optional<double> number_or_auto(Text flag, Text text) {
@@ -112,10 +108,7 @@ const RenderFlag flags[] = {
     {"replicates", "R", "share the samples out to R independent replicates, for 'castray compare --ztest'",
      sampling, [](Request r, Text f, Text t) { r.replicates = parse_whole(f, t, 1, 4096); }, false},
     {"sampler", "sobol|independent", "[sobol]", sampling,
-     [](Request r, Text f, Text t) {
-       r.options.sampler = parse_choice<SamplerKind>(
-           f, t, {{"sobol", SamplerKind::sobol}, {"independent", SamplerKind::independent}});
-     }},
+     [](Request r, Text f, Text t) { r.options.sampler = parse_choice(f, t, sampler_names); }},
     {"jitter", "on|off", "off: every sample through the pixel's centre [on]", sampling,
      [](Request r, Text f, Text t) { r.options.jitter = parse_on_off(f, t); }},
 
@@ -144,10 +137,7 @@ const RenderFlag flags[] = {
            f, t, {{"wavefront", Integrator::wavefront}, {"reference", Integrator::reference}});
      }},
     {"precision", "float|double", "of the reference [float]", estimator,
-     [](Request r, Text f, Text t) {
-       r.options.precision =
-           parse_choice<Precision>(f, t, {{"float", Precision::float32}, {"double", Precision::float64}});
-     }},
+     [](Request r, Text f, Text t) { r.options.precision = parse_choice(f, t, precision_names); }},
     {"rr", "auto|P", "Russian roulette: by throughput, or a fixed survival probability in (0,1] [auto]",
      estimator, [](Request r, Text f, Text t) { r.options.rr = number_or_auto(f, t); }},
     {"max-depth", "N|none", "most edges of a path: 1 emitters only, 2 direct light [none]", estimator,
@@ -158,15 +148,9 @@ const RenderFlag flags[] = {
     {"epsilon", "auto|X", "rays start by per-hit error bounds, or by the classic absolute epsilon [auto]",
      estimator, [](Request r, Text f, Text t) { r.options.epsilon = number_or_auto(f, t); }},
     {"lights", "auto|area|solid-angle|tree", "how light points are chosen [auto]", estimator,
-     [](Request r, Text f, Text t) {
-       r.options.lights = parse_choice<LightSampling>(f, t,
-                                                      {{"auto", LightSampling::automatic},
-                                                       {"area", LightSampling::area},
-                                                       {"solid-angle", LightSampling::solid_angle},
-                                                       {"tree", LightSampling::tree}});
-     }},
+     [](Request r, Text f, Text t) { r.options.lights = parse_choice(f, t, light_sampling_names); }},
     {"mis", "on|off|auto", "multiple importance sampling of lights and BSDFs [auto]", estimator,
-     [](Request r, Text f, Text t) { r.options.mis = parse_switch(f, t); }},
+     [](Request r, Text f, Text t) { r.options.mis = parse_choice(f, t, switch_names); }},
     {"reuse", "auto|off|WxH:N", "share N path suffixes in tiles of WxH pixels [auto]", estimator, set_reuse},
     {"clamp-indirect", "X|off",
      "scale a sample's indirect light down to X: fewer bright dots, but biased [off]", estimator,
@@ -174,20 +158,11 @@ const RenderFlag flags[] = {
        r.options.clamp_indirect = t == "off" ? std::nullopt : std::optional(parse_number(f, t));
      }},
     {"fault", "NAME", "show a classic fault (docs/classic-faults.md) on the reference", estimator,
-     [](Request r, Text f, Text t) {
-       r.fault = parse_choice<Fault>(f, t,
-                                     {{"none", Fault::none},
-                                      {"black-light", Fault::black_light},
-                                      {"vanishing-boxes", Fault::vanishing_boxes},
-                                      {"white-specks", Fault::white_specks},
-                                      {"slow-random", Fault::slow_random},
-                                      {"skewed-light", Fault::skewed_light},
-                                      {"no-light-choice", Fault::no_light_choice},
-                                      {"shared-counter", Fault::shared_counter}});
-     }},
+     [](Request r, Text f, Text t) { r.fault = parse_choice(f, t, fault_names); }},
 
     {"threads", "N", "[the processors allowed to this process, cgroup limits read]", machine,
-     [](Request r, Text f, Text t) { r.options.threads = static_cast<int>(parse_whole(f, t, 1, 4096)); }},
+     [](Request r, Text f, Text t) { r.options.threads = static_cast<int>(parse_whole(f, t, 1, 4096)); },
+     true, 't'},
     {"isa", "auto|scalar|...", "instruction set of the kernels [auto]", machine,
      [](Request r, Text, Text t) { r.options.isa = t; }},
     {"accel", "auto|list|bvh", "how triangles are found [auto]", machine,
@@ -222,7 +197,7 @@ const RenderFlag flags[] = {
     {"exposure", "STOPS", "of .ppm and .png [0]", output,
      [](Request r, Text f, Text t) { r.display.exposure = parse_number(f, t); }},
     {"tone", "srgb|linear|gamma:G", "curve of .ppm and .png; gamma:G is value^G [srgb]", output,
-     [](Request r, Text, Text t) { r.display.tone = parse_tone(t); }},
+     [](Request r, Text, Text t) { r.display.tone = parse_tone_curve(t); }},
     {"bits", "auto|16", bits_help, output,
      [](Request r, Text f, Text t) { r.display.bits16 = parse_bits(f, t); }, false},
     {"metadata", "plain|time", "time: PNG and EXR files tell how long they took, so no two are equal [plain]",

@@ -52,6 +52,7 @@ struct RenderFlag {
   const char* group;
   void (*set)(RenderRequest& request, const std::string& flag, const std::string& value);
   bool in_scene = true;  ///< may stand in a scene file's "render" section
+  char letter = 0;       ///< its short form: 't' of -t
 };
 
 std::span<const RenderFlag> render_flags();

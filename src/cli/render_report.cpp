@@ -44,6 +44,16 @@ std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// Flags that change neither samples nor how they are shown.
+const std::set<std::string> no_part_of_the_image = {"threads",          "checkpoint", "stats",
+                                                    "checkpoint-every", "resume",     "time-limit",
+                                                    "progress",         "metadata",   "strict"};
+
+std::string text_of(const GivenFlag& given) {
+  std::string text = std::string(" --") + given.flag->name;
+  return given.flag->metavar ? text + " " + shell_word(given.value) : text;
+}
+
 }  // namespace
 
 void RenderReport::print_warnings(bool verbose) const {
@@ -171,6 +181,7 @@ Metadata RenderReport::metadata() const {
   metadata["castray:version"] = CASTRAY_VERSION;
   metadata["castray:scene"] = scene.name;
   metadata["castray:spp"] = std::to_string(spp());
+  metadata["castray:options"] += repeating_flags(metadata["castray:options"]);
   if (tells_time) metadata["castray:seconds"] = fmt::format("{:.3f}", result.stats.render_seconds);
   return metadata;
 }
@@ -184,16 +195,24 @@ std::uint64_t RenderReport::spp() const {
   return std::uint64_t(std::llround(samples / (static_cast<double>(film.width()) * film.height())));
 }
 
-std::string RenderReport::replay(const NonfiniteSample& sample) const {
-  static const std::set<std::string> not_repeated = {
-      "spp",    "samples",    "crop",         "threads", "checkpoint", "stats", "checkpoint-every",
-      "resume", "time-limit", "target-error", "progress"};
-  std::string command = "castray render " + shell_word(scene.file.string());
+std::string RenderReport::repeating_flags(const std::string& known) const {
+  const bool all_samples = !options.samples && !options.target_error;
+  std::string flags = all_samples ? fmt::format(" --spp {}", spp()) : "";
   for (const GivenFlag& g : given) {
-    if (not_repeated.contains(g.flag->name)) continue;
-    command += std::string(" --") + g.flag->name;
-    if (g.flag->metavar) command += " " + shell_word(g.value);
+    const std::string name = g.flag->name;
+    const bool is_known = (" " + known).find(" --" + name + " ") != std::string::npos;
+    if (!is_known && !no_part_of_the_image.contains(name) && !(all_samples && name == "spp"))
+      flags += text_of(g);
   }
+  return flags;
+}
+
+std::string RenderReport::replay(const NonfiniteSample& sample) const {
+  static const std::set<std::string> other_samples = {"spp", "samples", "crop", "target-error"};
+  std::string command = "castray render " + shell_word(scene.file.string());
+  for (const GivenFlag& g : given)
+    if (!no_part_of_the_image.contains(g.flag->name) && !other_samples.contains(g.flag->name))
+      command += text_of(g);
   return command + fmt::format(" --crop {},{},{},{} --samples {}:1 -o sample.pfm", sample.x, sample.y,
                                sample.x + 1, sample.y + 1, sample.sample);
 }

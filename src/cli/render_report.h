@@ -39,6 +39,8 @@ struct RenderReport {
   void print_warnings(bool verbose) const;
   void print_expected_error() const;
   std::uint64_t spp() const;  ///< on average, with a target error
+  /// The flags that, besides those `known`, render the same image of the same scene file.
+  std::string repeating_flags(const std::string& known) const;
   /// The command that renders one sample again, alone.
   std::string replay(const NonfiniteSample& sample) const;
 };

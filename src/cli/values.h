@@ -29,11 +29,10 @@ std::vector<std::string> split(const std::string& text, char separator);
 [[noreturn]] void refuse_choice(const std::string& flag, const std::string& text,
                                 const std::vector<std::string_view>& names);
 
-template <class T>
-using Choices = std::vector<std::pair<std::string_view, T>>;
-
-template <class T>
-T parse_choice(const std::string& flag, const std::string& text, const Choices<T>& choices) {
+/// The value that `text` names in `choices`.
+template <class T, std::size_t N>
+T parse_choice(const std::string& flag, const std::string& text,
+               const std::pair<std::string_view, T> (&choices)[N]) {
   std::vector<std::string_view> names;
   for (const auto& [name, value] : choices) {
     if (name == text) return value;

@@ -143,7 +143,7 @@ std::string read_file(const fs::path& file) {
   if (fs::is_directory(file, ignored)) fail(file, "is a folder; give a file");
   errno = 0;
   std::ifstream in(file, std::ios::binary);
-  if (!in) fail(file, "cannot be read: " + reason(errno));
+  if (!in) fail(file, errno == ENOENT ? "does not exist" : "cannot be read: " + reason(errno));
   const std::uintmax_t length = fs::is_regular_file(file, ignored) ? fs::file_size(file, ignored) : 0;
   if (length > memory_size()) fail(file, "is longer than this machine's memory");
   std::string bytes;

@@ -145,8 +145,7 @@ void Film::merge(const Film& other) {
     throw InputError("the films show different windows: " + to_string(window_) + " and " +
                      to_string(other.window_));
   if (key != other.key)
-    throw InputError("the films are of different renders: " + items_missing(key, other.key) + " against " +
-                     items_missing(other.key, key));
+    throw InputError("the films are of different renders: " + difference_of_keys(key, other.key));
   if (scale_ != other.scale_)
     throw InputError(
         fmt::format("the films are of scenes of different brightness: {} and {}", scale_, other.scale_));
@@ -169,13 +168,22 @@ void Film::merge(const Film& other) {
   nonfinite_samples += other.nonfinite_samples;
 }
 
+std::string difference_of_keys(const std::string& a, const std::string& b) {
+  return items_missing(a, b) + " against " + items_missing(b, a);
+}
+
 Metadata describe(const Film& film) {
-  Metadata metadata{{"castray:options", film.key}};
+  Metadata metadata;
+  std::string& options = metadata["castray:options"];
   for (const std::string& item : items_of(film.key)) {
-    for (const std::string name : {"scene", "seed"})
-      if (item.starts_with(name + "="))
-        metadata["castray:" + name] = unescape_item(std::string_view(item).substr(name.size() + 1));
-    if (item.starts_with("clamp-indirect=")) metadata["castray:biased"] = item;
+    const std::string name = item.substr(0, item.find('='));
+    const std::string value(
+        unescape_item(std::string_view(item).substr(std::min(name.size() + 1, item.size()))));
+    if (name == "scene" || name == "hash" || name == "seed" || name == "sharing")
+      metadata["castray:" + name] = value;
+    if (name != "scene" && name != "hash" && name != "sharing")
+      options += (options.empty() ? "--" : " --") + name + " " + value;
+    if (name == "clamp-indirect") metadata["castray:biased"] = item;
   }
   std::uint64_t spp = 0;
   for (const SampleRange& range : film.samples) spp += range.count;

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "materials/descriptor.h"
+#include "plan/option_names.h"
 
 namespace castray {
 
@@ -105,19 +106,21 @@ std::string film_key(const SceneFacts& scene, const Job& job) {
   add("size", fmt::format("{}x{}", job.window.full_width, job.window.full_height));
   add("seed", o.seed);
   add("integrator", o.integrator == Integrator::reference ? "reference" : "wavefront");
-  add("precision", o.precision == Precision::float64 ? "double" : "float");
-  add("sampler", o.sampler == SamplerKind::sobol ? "sobol" : "independent");
+  add("precision", name_in(precision_names, o.precision));
+  add("sampler", name_in(sampler_names, o.sampler));
   add("rr", number_or_auto(o.rr));
-  add("max-depth", o.max_depth);
+  add("max-depth", o.max_depth > 0 ? std::to_string(o.max_depth) : "none");
   add("epsilon", number_or_auto(o.epsilon));
-  add("lights", static_cast<int>(o.lights));
-  add("mis", static_cast<int>(o.mis));
+  add("lights", name_in(light_sampling_names, o.lights));
+  add("mis", name_in(switch_names, o.mis));
   add("jitter", o.jitter ? "on" : "off");
-  add("reuse",
-      o.reuse.automatic ? "auto" : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
+  add("reuse", o.reuse.automatic ? "auto"
+               : o.reuse.width == 0
+                   ? "off"
+                   : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
   if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
   if (o.target_error) add("target-error", *o.target_error);
-  if (job.fault != Fault::none) add("fault", static_cast<int>(job.fault));
+  if (job.fault != Fault::none) add("fault", name_in(fault_names, job.fault));
   return key;
 }
 

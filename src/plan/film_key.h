@@ -8,7 +8,8 @@
 namespace castray {
 
 /// All that a film's samples depend on besides their index, readable: the scene with a hash of its contents,
-/// image size, seed and the options that change the estimator. Not threads, crop, or accelerator.
+/// image size, seed and the options that change the estimator, each as NAME=VALUE of a flag of the command
+/// line. Not threads, crop, or accelerator.
 std::string film_key(const SceneFacts& scene, const Job& job);
 
 /// A hash of all of a scene that samples depend on.

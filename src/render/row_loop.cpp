@@ -1,5 +1,6 @@
 #include "render/row_loop.h"
 
+#include <fmt/core.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -79,6 +80,18 @@ class ExceptionKeeper {
   std::atomic<bool> any_ = false;
 };
 
+/// What keeps `start` from being continued as `film`, to the samples `wanted`; empty where it can be.
+std::string difference_to_resume(const Film& start, const Film& film, const SampleRange& wanted) {
+  if (start.key != film.key) return difference_of_keys(start.key, film.key);
+  if (start.window() != film.window()) return "another crop";
+  if (start.scale() != film.scale()) return "the scene's lights were of another brightness";
+  if (start.samples.empty()) return "";
+  const SampleRange& held = start.samples.front();
+  if (start.samples.size() == 1 && held.first == wanted.first && held.count <= wanted.count) return "";
+  return fmt::format("its samples begin with {}:{}, and {}:{} are asked for", held.first, held.count,
+                     wanted.first, wanted.count);
+}
+
 /// The state of one run, shared by its threads.
 class RowLoop {
  public:
@@ -123,13 +136,9 @@ class RowLoop {
 
   void resume(const Film& start) {
     Film& film = result_.film;
-    const bool same =
-        start.window() == film.window() && start.key == film.key && start.scale() == film.scale();
-    const bool within =
-        start.samples.empty() || (start.samples.size() == 1 && start.samples[0].first == samples_.first &&
-                                  start.samples[0].count <= samples_.count);
-    if (!same || !within)
-      throw InputError("the film to resume is of another render; remove it or give the same options");
+    if (const std::string difference = difference_to_resume(start, film, samples_); !difference.empty())
+      throw InputError("the film to resume is of another render: " + difference +
+                       "; remove it or give the same options");
     film = start;
     finished_ = finished_samples(film, passes_);
   }

@@ -169,7 +169,7 @@ TEST_CASE("render refuses what it does not understand, in one line, before it st
     const char* message;
   };
   const Case cases[] = {
-      {{"render"}, "scene is required"},
+      {{"render"}, "SCENE is missing; see castray render --help"},
       {{"render", cornell, "--sppp", "4"}, "did you mean '--spp'"},
       {{"render", cornell, "extra"}, "extra"},
       {{"render", cornell, "--spp", "0"}, "--spp '0'"},

@@ -47,7 +47,7 @@ TEST_CASE("a render stops where its target error is reached, and says so") {
   CHECK(o.stats["spp"] > 1);
   const auto metadata = read_image(folder / "x.png").metadata;
   CHECK(metadata.at("castray:spp") == std::to_string(o.stats["spp"].get<int>()));
-  CHECK_THAT(metadata.at("castray:options"), Contains("target-error=0.001"));
+  CHECK_THAT(metadata.at("castray:options"), Contains("--target-error 0.001"));
 }
 
 TEST_CASE("the scene's spp does not limit a target error, --spp does") {

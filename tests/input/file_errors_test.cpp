@@ -81,7 +81,7 @@ void nothing(const Folder&) {}
 
 const std::vector<Case> cases = {
     // What is no file
-    {"missing scene", nothing, {"info", "gone.json"}, "gone.json: cannot be read: No such file"},
+    {"missing scene", nothing, {"info", "gone.json"}, "gone.json: does not exist"},
     {"a folder as scene",
      [](const Folder& f) { fs::create_directory(f.folder / "d.json"); },
      {"info", "d.json"},
@@ -105,8 +105,8 @@ const std::vector<Case> cases = {
      nothing,
      {"info", "s.json/x.json"},
      "s.json/x.json: cannot be read: Not a directory"},
-    {"a name that is not UTF-8", nothing, {"info", "\xff\xfe.json"}, "cannot be read: No such file"},
-    {"a name with a line break", nothing, {"info", "a\nb.json"}, "cannot be read: No such file"},
+    {"a name that is not UTF-8", nothing, {"info", "\xff\xfe.json"}, "does not exist"},
+    {"a name with a line break", nothing, {"info", "a\nb.json"}, "does not exist"},
     {"a device without end",
      [](const Folder& f) { fs::create_symlink("/dev/zero", f.folder / "z.obj"); },
      {"info", "z.obj"},
@@ -199,7 +199,7 @@ const std::vector<Case> cases = {
     {"a checkpoint of another render",
      nothing,
      {"render", "s.json", "-q", "--seed", "1", "--checkpoint", "i.film", "--resume", "-o", "x.png"},
-     ""},
+     "of another render: seed=0 against seed=1;"},
     // Outputs
     {"a full disk",
      [](const Folder& f) { fs::create_symlink("/dev/full", f.folder / "full.png"); },

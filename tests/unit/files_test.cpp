@@ -101,5 +101,5 @@ TEST_CASE("an output path that cannot work is refused with its reason") {
   fs::permissions(folder / "file", fs::perms::owner_read);
   CHECK_THROWS_WITH(check_writable(folder / "file"), Catch::Contains("write-protected"));
   CHECK_THROWS_WITH(read_file(folder.path()), Catch::Contains("is a folder"));
-  CHECK_THROWS_WITH(read_file(folder / "absent"), Catch::Contains("No such file"));
+  CHECK_THROWS_WITH(read_file(folder / "absent"), Catch::Contains("does not exist"));
 }

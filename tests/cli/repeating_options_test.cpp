@@ -1,0 +1,50 @@
+// The options that an image holds are flags that render it again.
+#include <catch2/catch.hpp>
+
+#include <iterator>
+#include <sstream>
+
+#include "castray/image.h"
+#include "core/files.h"
+#include "run_castray.h"
+
+using namespace castray;
+using Words = std::vector<std::string>;
+
+namespace {
+
+const std::string scene = CASTRAY_ROOT "/scenes/cornell_box.json";
+
+Words words_of(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+}  // namespace
+
+TEST_CASE("the options that an image holds are flags that render it again, byte for byte") {
+  const TemporaryFolder folder;
+  const Words renders[] = {
+      {},
+      {"--seed", "7", "--sampler", "independent", "--rr", "0.7", "--max-depth", "4", "--reuse", "off"},
+      {"--lights", "solid-angle", "--mis", "on", "--jitter", "off", "--crop", "2,3,14,12"},
+      {"--samples", "3:5", "--reuse", "8x8:16", "--clamp-indirect", "2", "--exposure", "1", "--bits", "16"},
+      {"--integrator", "reference", "--precision", "double", "--epsilon", "0.01"},
+      {"--integrator", "reference", "--fault", "skewed-light"},
+      {"--replicates", "4", "--tone", "gamma:0.6"},
+      {"--look-from", "278,273,-500", "--look-at", "278,200,0", "--fov", "60", "--environment", "0.1,0.2,0.3",
+       "--two-sided-lights", "--generic", "--accel", "bvh"}};
+  for (const Words& given : renders) {
+    Words command = {"render", scene,   "-q", "--size", "16x16", "--spp", "8",
+                     "-o",     "a.png", "-o", "a.film", "-t",    "2"};
+    command.insert(command.end(), given.begin(), given.end());
+    REQUIRE(run_castray(command, folder.path()).exit_code == 0);
+    const std::string options = read_image(folder / "a.png").metadata.at("castray:options");
+    INFO(options);
+    Words again = {"render", scene, "-q", "-o", "b.png", "-o", "b.film"};
+    for (const std::string& word : words_of(options)) again.push_back(word);
+    CHECK(run_castray(again, folder.path()).err == "");
+    CHECK(read_file(folder / "a.png") == read_file(folder / "b.png"));
+    CHECK(read_file(folder / "a.film") == read_file(folder / "b.film"));
+  }
+}
