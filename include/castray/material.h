@@ -23,7 +23,7 @@ struct Texture {
   int channels = 3;                           ///< side by side: grey; grey, alpha; RGB; or RGB, alpha
   ColorSpace color_space = ColorSpace::srgb;  ///< of `bytes`
   std::vector<std::uint8_t> bytes{};          ///< width * height * channels; or, if empty,
-  std::vector<float> floats{};                ///< as many linear values, >= 0
+  std::vector<float> floats{};                ///< as many linear values; below 0 only as heights
 };
 
 /// How an image gives a parameter its value at a texture coordinate (u,v):

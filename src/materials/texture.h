@@ -106,6 +106,12 @@ Vec3<T> picked(const TextureMap& map, ValueOf value_of) {
   }
 }
 
+/// What a map makes of a number that one texel holds.
+inline float number_of_texel(const Texel& texel, TextureMap map) {
+  if (map.channel == Channel::color) map.channel = Channel::luminance;
+  return picked<float>(map, [&](std::size_t channel) { return texel[channel]; }).x;
+}
+
 /// What a map makes of a colour, at (u,v) of the mesh.
 template <class T>
 Vec3<T> map_color(const Texture& texture, const TextureMap& map, T u, T v) {

@@ -93,8 +93,13 @@ class MaterialReader {
     const JsonNode& image = reader.require("image");
     const std::filesystem::path path = file_.parent_path() / read_string(image, "\"image\"");
     if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));
-    map.texture = builder_.add_texture(path, space);
+    map.texture = builder_.add_texture(path, space, meaning_of(key));
     material_.map(*key.parameter) = map;
+  }
+
+  static TextureMeaning meaning_of(const MaterialKey& key) {
+    if (key.parameter == SurfaceParameter::normal) return TextureMeaning::normals;
+    return key.parameter == SurfaceParameter::bump ? TextureMeaning::heights : TextureMeaning::amounts;
   }
 
   /// An image without a factor is taken as it is.

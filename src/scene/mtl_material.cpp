@@ -56,12 +56,15 @@ class Meaning {
   bool is_mapped(MtlMap map) const { return mtl_.map(map).has_value(); }
 
   /// Adds a map's image; false where there is none.
-  bool set_map(SurfaceParameter parameter, MtlMap map, ColorSpace space) {
+  bool set_map(SurfaceParameter parameter, MtlMap map, ColorSpace space,
+               TextureMeaning meaning = TextureMeaning::amounts) {
     if (!is_mapped(map)) return false;
-    TextureMap& to = material_.map(parameter);
-    to = read_map(*mtl_.map(map), space, builder_);
-    if (!to.used()) to = {};
-    return to.used();
+    return set_map(parameter, read_map(*mtl_.map(map), space, meaning, builder_));
+  }
+
+  bool set_map(SurfaceParameter parameter, const TextureMap& map) {
+    material_.map(parameter) = map.used() ? map : TextureMap();
+    return map.used();
   }
 
   /// A map alone, or beside black, which would hide it, is not scaled.
@@ -99,19 +102,22 @@ class Meaning {
   }
 
   void read_normals() {
-    if (set_map(normal, MtlMap::normal, ColorSpace::linear)) {
-      material_.map(normal).gain = static_cast<float>(mtl_.map(MtlMap::normal)->bump);
-    } else if (set_map(bump, MtlMap::bump, ColorSpace::linear)) {
-      TextureMap& map = material_.map(bump);
-      const auto strength = static_cast<float>(mtl_.map(MtlMap::bump)->bump);
-      if (holds_normals(texture_of(map))) {
-        material_.map(normal) = map;
-        material_.map(normal).gain = strength;
-        map = {};
-      } else {
-        map.gain *= strength;
-      }
+    if (set_normal_map(MtlMap::normal) ||
+        !set_map(bump, MtlMap::bump, ColorSpace::linear, TextureMeaning::heights))
+      return;
+    TextureMap& heights = material_.map(bump);
+    if (holds_normals(texture_of(heights))) {
+      heights = {};
+      set_normal_map(MtlMap::bump);
+    } else {
+      heights.gain *= static_cast<float>(mtl_.map(MtlMap::bump)->bump);
     }
+  }
+
+  bool set_normal_map(MtlMap map) {
+    if (!set_map(normal, map, ColorSpace::linear, TextureMeaning::normals)) return false;
+    material_.map(normal).gain = static_cast<float>(mtl_.map(map)->bump);
+    return true;
   }
 
   const Texture& texture_of(const TextureMap& map) const {
@@ -124,9 +130,19 @@ class Meaning {
     if (set_map(roughness, MtlMap::roughness, ColorSpace::linear)) {
       const double factor = blender_ ? 1 : mtl_.roughness.value_or(1);
       material_.alpha = factor > 0 ? factor * factor : 1;
+    } else if (!mtl_.roughness && set_exponent_map()) {
+      material_.alpha = 1;
     } else {
       material_.alpha = constant_alpha();
     }
+  }
+
+  /// Blender's map_Ns is of roughness itself; others' of a factor of the exponent, which is at most 1000.
+  bool set_exponent_map() {
+    if (blender_) return set_map(roughness, MtlMap::ns, ColorSpace::linear);
+    if (!is_mapped(MtlMap::ns)) return false;
+    constexpr double greatest = 1000;
+    return set_map(roughness, read_exponent_map(*mtl_.map(MtlMap::ns), mtl_.ns.value_or(greatest), builder_));
   }
 
   double constant_alpha() const {
@@ -135,7 +151,7 @@ class Meaning {
     // Blender: Ns = 1000 (1 - roughness)^2.
     if (blender_) return std::pow(1 - std::sqrt(std::min(1.0, *mtl_.ns / 1000)), 2);
     if (illum_is({3, 5}) && *mtl_.ns >= 1000) return 0;
-    return std::min(1.0, std::sqrt(2 / (*mtl_.ns + 2)));
+    return alpha_of_exponent(*mtl_.ns);
   }
 
   /// Whether the material is told by metalness, as Blender and others do in MTL's extension for PBR.
@@ -147,8 +163,8 @@ class Meaning {
     if (is_principled())
       return mtl_.ks || mapped ? color(mtl_.ks, mapped, {}) * blender_scale : Vec3d(usual_dielectric);
     if (illum_is({3, 5})) return color(mtl_.ks, mapped, Vec3d(0.8));
-    const bool has_highlight =
-        !illum_is({0, 1}) && (mtl_.ns || mtl_.roughness || is_mapped(MtlMap::roughness));
+    const bool has_highlight = !illum_is({0, 1}) && (mtl_.ns || mtl_.roughness ||
+                                                     is_mapped(MtlMap::roughness) || is_mapped(MtlMap::ns));
     return has_highlight ? color(mtl_.ks, mapped, Vec3d(0.0)) : Vec3d(0.0);
   }
 
@@ -170,7 +186,6 @@ class Meaning {
     } else {
       material_.map(ks) = {};
     }
-    if (is_mapped(MtlMap::ns)) not_done(*mtl_.map(MtlMap::ns));
   }
 
   void set_conductor(const Vec3d& color, SurfaceParameter source) {
@@ -194,16 +209,15 @@ class Meaning {
     material_.type = MaterialType::dielectric;
     material_.ior = mtl_.ni && *mtl_.ni > 1 ? *mtl_.ni : 1.5;
     // Ns of glass is the width of a highlight drawn on it, not of its surface.
-    if (!blender_ && !mtl_.roughness && !is_mapped(MtlMap::roughness)) material_.alpha = 0;
+    if (!blender_ && !mtl_.roughness && !is_mapped(MtlMap::roughness)) {
+      material_.alpha = 0;
+      material_.map(roughness) = {};
+    }
     if (blender_ && mtl_.tf)
       material_.transmittance = material_.kd;
     else
       material_.transmittance = mtl_.tf && max_component(*mtl_.tf) > 0 ? *mtl_.tf : Vec3d(1.0);
     if (blender_ && mtl_.tf) material_.map(transmittance) = material_.map(kd);
-  }
-
-  void not_done(const TextureStatement& statement) {
-    builder_.warnings.add(statement.place, statement.key + " is not done");
   }
 
   const MtlMaterial& mtl_;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "castray/image.h"
 #include "core/text.h"
@@ -31,8 +32,9 @@ ColorSpace color_space_of(const std::string& name, ColorSpace usual) {
                                                                                 : ColorSpace::linear;
 }
 
-/// The texture's position in the scene, or -1.
-int add_image(const TextureStatement& statement, ColorSpace space, SceneBuilder& builder) {
+/// Adds the texture that `add` makes of the statement's file; its position in the scene, or -1.
+template <class Add>
+int add_image(const TextureStatement& statement, SceneBuilder& builder, const Add& add) {
   const std::string what = statement.key + ": ";
   const auto warn = [&](const std::string& message, Harm harm = Harm::changes_picture) {
     builder.warnings.add(statement.place, what + message, harm);
@@ -45,7 +47,7 @@ int add_image(const TextureStatement& statement, ColorSpace space, SceneBuilder&
   if (file->elsewhere)
     warn(fmt::format("{} is not there; {} is used", printable(statement.file), path), Harm::none);
   try {
-    return builder.add_texture(file->path, space);
+    return add(file->path);
   } catch (const InputError& error) {
     throw InputError(statement.place, what + error.what());
   }
@@ -62,9 +64,8 @@ bool any_texel(const Texture& texture, const Holds& holds) {
   return false;
 }
 
-}  // namespace
-
-TextureMap read_map(const TextureStatement& statement, ColorSpace usual, SceneBuilder& builder) {
+/// What a statement says besides its image.
+TextureMap map_of(const TextureStatement& statement, SceneBuilder& builder) {
   TextureMap map;
   for (std::size_t i = 0; i < 2; ++i) {
     map.scale[i] = static_cast<float>(statement.scale[i]);
@@ -74,11 +75,54 @@ TextureMap read_map(const TextureStatement& statement, ColorSpace usual, SceneBu
   map.base = static_cast<float>(statement.base);
   map.gain = static_cast<float>(statement.gain);
   map.channel = channel_of(statement.channel);
-  map.texture = add_image(statement, color_space_of(statement.color_space, usual), builder);
   for (const std::string& option : statement.ignored_options)
     builder.ignore(statement.place.file, statement.key + " " + option);
   return map;
 }
+
+/// The image of roughness, a byte a texel, for that which `map` reads, as a factor of the exponent `ns`.
+Texture roughness_image(const Texture& exponents, const TextureMap& map, double ns) {
+  Texture image{.name = exponents.name,
+                .width = exponents.width,
+                .height = exponents.height,
+                .channels = 1,
+                .color_space = ColorSpace::linear};
+  image.bytes.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+  for (std::size_t i = 0; i < image.bytes.size(); ++i) {
+    const double factor = number_of_texel(texel(exponents, i), map);
+    const double roughness = std::sqrt(alpha_of_exponent(std::max(0.0, ns * factor)));
+    image.bytes[i] = static_cast<std::uint8_t>(std::lround(255 * roughness));
+  }
+  return image;
+}
+
+}  // namespace
+
+TextureMap read_map(const TextureStatement& statement, ColorSpace usual, TextureMeaning meaning,
+                    SceneBuilder& builder) {
+  TextureMap map = map_of(statement, builder);
+  const ColorSpace space = color_space_of(statement.color_space, usual);
+  map.texture = add_image(statement, builder, [&](const std::filesystem::path& file) {
+    return builder.add_texture(file, space, meaning);
+  });
+  return map;
+}
+
+TextureMap read_exponent_map(const TextureStatement& statement, double ns, SceneBuilder& builder) {
+  TextureMap map = map_of(statement, builder);
+  const ColorSpace space = color_space_of(statement.color_space, ColorSpace::linear);
+  map.texture = add_image(statement, builder, [&](const std::filesystem::path& file) {
+    const std::string name = fmt::format("{}\nNs {} {} {} {} {}", file.string(), ns, map.base, map.gain,
+                                         static_cast<int>(map.channel), static_cast<int>(space));
+    return builder.add_texture(name, [&] {
+      return roughness_image(make_texture(file.filename().string(), read_raster(file), space), map, ns);
+    });
+  });
+  map.base = 0, map.gain = 1, map.channel = Channel::color;
+  return map;
+}
+
+double alpha_of_exponent(double ns) { return std::min(1.0, std::sqrt(2 / (ns + 2))); }
 
 bool holds_normals(const Texture& texture) {
   constexpr float coloured = 0.2f;  // what the encoding of a grey image never adds

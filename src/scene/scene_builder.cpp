@@ -66,6 +66,22 @@ bool has_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   return cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a)) != Vec3d{};
 }
 
+void check_values(const std::vector<float>& values, TextureMeaning meaning,
+                  const std::filesystem::path& file) {
+  for (const float value : values) {
+    if (!std::isfinite(value))
+      throw InputError(SourcePlace{file.string()}, "a texture's values must be finite");
+    if (value < 0 && meaning == TextureMeaning::amounts)
+      throw InputError(SourcePlace{file.string()}, "a texture's values must be at least 0");
+  }
+}
+
+/// Stores as (1 + n) / 2 what is stored as n.
+void encode_normals(std::vector<float>& values) {
+  if (std::ranges::none_of(values, [](float v) { return v < 0; })) return;
+  for (float& value : values) value = (1 + value) / 2;
+}
+
 }  // namespace
 
 std::uint16_t SceneBuilder::add_material(Material material) {
@@ -77,16 +93,25 @@ std::uint16_t SceneBuilder::add_material(Material material) {
   return static_cast<std::uint16_t>(scene.materials.size() - 1);
 }
 
-int SceneBuilder::add_texture(const std::filesystem::path& file, ColorSpace space) {
-  const auto [found, is_new] = textures_.try_emplace({file, space}, static_cast<int>(scene.textures.size()));
-  if (is_new) {
+int SceneBuilder::add_texture(const std::filesystem::path& file, ColorSpace space, TextureMeaning meaning) {
+  // Bytes are never below 0: they are the same whatever they mean.
+  const std::string as_bytes = fmt::format("{}\n{}", file.string(), static_cast<int>(space));
+  if (const auto found = textures_.find(as_bytes); found != textures_.end()) return found->second;
+  const std::string name = fmt::format("{} {}", as_bytes, static_cast<int>(meaning));
+  const int index = add_texture(name, [&] {
     Raster raster = read_raster(file);
-    for (const float value : raster.floats)
-      if (!(value >= 0 && std::isfinite(value)))
-        throw InputError(SourcePlace{file.string()}, "a texture's values must be finite and at least 0");
-    scene.textures.push_back(make_texture(file.filename().string(), std::move(raster), space));
-  }
-  return found->second;
+    check_values(raster.floats, meaning, file);
+    if (meaning == TextureMeaning::normals) encode_normals(raster.floats);
+    return make_texture(file.filename().string(), std::move(raster), space);
+  });
+  if (!scene.textures[static_cast<std::size_t>(index)].bytes.empty()) textures_[as_bytes] = index;
+  return index;
+}
+
+int SceneBuilder::add_texture(const std::string& name, const std::function<Texture()>& make) {
+  if (const auto found = textures_.find(name); found != textures_.end()) return found->second;
+  scene.textures.push_back(make());
+  return textures_[name] = static_cast<int>(scene.textures.size()) - 1;
 }
 
 void SceneBuilder::ignore(const std::filesystem::path& file, std::string_view key) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,10 @@
 #include "scene/warning_list.h"
 
 namespace castray {
+
+/// What the values of an image stand for: amounts are at least 0, heights are of either sign, and normals n
+/// are (1 + n) / 2, or n themselves in an image that has values below 0.
+enum class TextureMeaning : std::uint8_t { amounts, heights, normals };
 
 /// Gathers a scene's meshes in double, and moves them into scene space at the end.
 class SceneBuilder {
@@ -25,7 +30,11 @@ class SceneBuilder {
   std::uint16_t add_material(Material material);
 
   /// The index of a file's texture, read when first asked for. Throws InputError.
-  int add_texture(const std::filesystem::path& file, ColorSpace space);
+  int add_texture(const std::filesystem::path& file, ColorSpace space,
+                  TextureMeaning meaning = TextureMeaning::amounts);
+
+  /// The index of the texture that `make` returns when `name` is first asked for.
+  int add_texture(const std::string& name, const std::function<Texture()>& make);
 
   /// Notes a key of a file that means nothing here.
   void ignore(const std::filesystem::path& file, std::string_view key);
@@ -45,7 +54,7 @@ class SceneBuilder {
   void keep_triangles(const std::vector<bool>& keep);
 
   Mesh mesh_;
-  std::map<std::pair<std::filesystem::path, ColorSpace>, int> textures_;
+  std::map<std::string, int> textures_;  ///< by what they are made of
 };
 
 }  // namespace castray

@@ -7,6 +7,7 @@
 
 #include "castray/image.h"
 #include "castray/scene.h"
+#include "materials/texture.h"
 #include "temporary_folder.h"
 
 using namespace castray;
@@ -20,10 +21,12 @@ struct Read {
     const TemporaryFolder folder;
     std::ofstream(folder / "o.obj") << "mtllib o.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
     std::ofstream(folder / "o.mtl") << first << "newmtl m\n" << statements;
-    Image grey(1, 1), tilted(1, 1);
+    Image grey(1, 1), tilted(1, 1), signs(1, 1);
     grey.pixels = {{0.5f, 0.5f, 0.5f}};
     tilted.pixels = {{0.85f, 0.5f, 0.85f}};
+    signs.pixels = {{-0.6f, 0, 0.8f}};
     write_image(folder / "grey.pfm", grey);
+    write_image(folder / "signs.pfm", signs);
     write_image(folder / "tilted.pfm", tilted);
     scene = load_scene(folder / "o.obj");
   }
@@ -160,6 +163,40 @@ TEST_CASE("bump maps are of heights where they are grey, of normals where they a
   }
 }
 
+TEST_CASE("normals of either sign, as float images hold them, are read as what they are") {
+  for (const std::string key : {"norm", "map_Bump"}) {
+    const Read signs(key + " signs.pfm\n");
+    const TextureMap& map = signs.material().map(normal);
+    REQUIRE(map.used());
+    CHECK(!signs.material().map(bump).used());
+    const Vec3d n = map_normal(signs.scene.textures[static_cast<std::size_t>(map.texture)], map, 0.5, 0.5);
+    for (int c = 0; c < 3; ++c) CHECK(n[c] == Approx(Vec3d{-0.6, 0, 0.8}[c]).margin(1e-6));
+  }
+  CHECK_THROWS_WITH(Read("map_Kd signs.pfm\n"), Catch::Contains("o.mtl:2") && Catch::Contains("at least 0"));
+}
+
+TEST_CASE("an image of the exponent of a highlight is one of roughness") {
+  const auto roughness_of = [](const Read& read) {
+    const TextureMap& map = read.material().map(roughness);
+    REQUIRE(map.used());
+    CHECK(read.material().alpha == 1);
+    return map_number(read.scene.textures[static_cast<std::size_t>(map.texture)], map, 0.5, 0.5);
+  };
+  const double half_step = 0.5 / 255;
+  const auto of_exponent = [=](double ns) {
+    return Approx(std::sqrt(std::sqrt(2 / (ns + 2)))).margin(half_step);
+  };
+  const Read half("Ks .5 .5 .5\nNs 200\nmap_Ns grey.pfm\n");
+  CHECK(half.material().type == MaterialType::microfacet);
+  CHECK(roughness_of(half) == of_exponent(100));
+  CHECK(roughness_of(Read("Ks .5\nNs 200\nmap_Ns -mm .1 1 grey.pfm\n")) == of_exponent(120));
+  CHECK(roughness_of(Read("Ks .5\nmap_Ns grey.pfm\n")) == of_exponent(500));
+  CHECK(roughness_of(Read("Ks .5\nNs 200\nmap_Ns grey.pfm\n", blender)) == Approx(0.5));
+  CHECK(Read("Ks .5\nPr .5\nmap_Ns grey.pfm\n").material().alpha == 0.25);
+  CHECK(Read("Ns 200\nillum 7\nNi 1.5\nmap_Ns grey.pfm\n").material().map(roughness).used() == false);
+  CHECK(Read("Ks .5\nmap_Ns grey.pfm\n").scene.textures.size() == 1);
+}
+
 TEST_CASE("options of images") {
   const TextureMap map = read("map_Kd -s 2 3 1 -o .5 .25 -clamp on -mm .1 .9 -imfchan g grey.pfm\n").map(kd);
   CHECK(map.scale == std::array<float, 2>{2, 3});
@@ -174,5 +211,4 @@ TEST_CASE("what is not done and would be seen is told") {
   CHECK(Read("Pc .5\n").warning() == "Pc is not done");
   CHECK(Read("Pc 0\nPs 0\naniso 0\nPcr .03\nKa 1 1 1\nsharpness 60\n").warning().empty());
   CHECK(Read("disp grey.pfm\n").warning() == "disp is not done");
-  CHECK(Read("map_Ns grey.pfm\n").warning() == "map_Ns is not done");
 }
