@@ -47,15 +47,18 @@ struct TextureMap {
 struct Material {
   std::string name;
   MaterialType type = MaterialType::diffuse;
-  Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet: albedo of the diffuse base
-  Vec3d ks{0, 0, 0};                 ///< microfacet: Schlick's F0
+  Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet, principled: albedo of the diffuse base
+  Vec3d ks{0, 0, 0};                 ///< microfacet, principled: Schlick's F0
   Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: constant Fresnel reflectance
   Vec3d transmittance{1, 1, 1};      ///< dielectric: tint of what passes through the surface
   Vec3d ke{0, 0, 0};                 ///< emitted radiance
   double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
-  double metallic = 0;  ///< microfacet, [0,1]: the base becomes kd (1 - metallic), F0 a blend from ks to kd
-  double coverage = 1;  ///< [0,1]: the share of the surface that is there
-  bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
+  double metallic = 0;               ///< principled, [0,1]: the metal's share
+  double sheen = 0;                  ///< principled, [0,1]
+  double clearcoat = 0;              ///< principled, [0,1]: the share that the coat covers
+  double clearcoat_roughness = 0;    ///< principled, [0,1]
+  double coverage = 1;               ///< [0,1]: the share of the surface that is there
+  bool correlated_masking = true;    ///< false, reference integrator only: to compare with renderers without
   double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
   bool two_sided_emission = false;
   bool vertex_colors = false;  ///< Scene::colors multiply kd where the triangle has them

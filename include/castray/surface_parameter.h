@@ -7,7 +7,7 @@
 namespace castray {
 
 /// How a surface reflects; the definitions are in docs/materials.md.
-enum class MaterialType : uint8_t { diffuse, microfacet, conductor, dielectric };
+enum class MaterialType : uint8_t { diffuse, microfacet, conductor, dielectric, principled };
 
 /// What of a surface an image can change from point to point.
 enum class SurfaceParameter : uint8_t {

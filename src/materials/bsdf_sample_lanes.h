@@ -9,14 +9,21 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// What `principled` has besides; set in lanes of that type only.
+struct PrincipledLayers {
+  Float metallic, sheen, clearcoat, clearcoat_alpha;
+  Uint clearcoat_albedo;  ///< offset of its table
+};
+
 /// How a surface reflects at a point.
 struct Bsdf {
   Uint type;    ///< MaterialType
   Vec kd, ks;   ///< the values of slot_kd and slot_ks
   Float alpha;  ///< 0: smooth
   Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side
-  Uint albedo;  ///< microfacet: offset of its table
+  Uint albedo;  ///< microfacet, principled: offset of its lobe's table
   const KernelAlbedo* albedos;
+  PrincipledLayers layers;
 
   CASTRAY_INLINE Mask is(MaterialType t) const { return type == Uint((uint32_t)t); }
   CASTRAY_INLINE Mask smooth() const { return alpha <= Float(0.f); }

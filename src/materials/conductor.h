@@ -16,7 +16,7 @@ struct Conductor {
   Ggx<T> ggx;
 
   static const MaterialDescriptor& descriptor() { return conductor_descriptor(); }
-  static Conductor make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo*) {
+  static Conductor make(const SurfaceValues<double>& values, const Material& m, const LobeTables&) {
     return {Vec3<T>(values.color(slot_ks)), {static_cast<T>(values.at(slot_alpha)), m.correlated_masking}};
   }
 

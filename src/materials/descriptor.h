@@ -27,6 +27,7 @@ struct MaterialKey {
 };
 
 class LobeAlbedo;
+struct LobeTables;
 
 /// All that is to be known of a material besides its reflection: what files, `info`, hashes, plans and
 /// kernels need, in one place.

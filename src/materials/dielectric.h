@@ -40,7 +40,7 @@ struct Dielectric {
   Vec3<T> transmittance{1};
 
   static const MaterialDescriptor& descriptor() { return dielectric_descriptor(); }
-  static Dielectric make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo*) {
+  static Dielectric make(const SurfaceValues<double>& values, const Material& m, const LobeTables&) {
     return {static_cast<T>(m.ior),
             {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
             Vec3<T>(values.color(slot_kd))};

@@ -16,7 +16,7 @@ struct Diffuse {
   Vec3<T> kd;
 
   static const MaterialDescriptor& descriptor() { return diffuse_descriptor(); }
-  static Diffuse make(const SurfaceValues<double>& values, const Material&, const LobeAlbedo*) {
+  static Diffuse make(const SurfaceValues<double>& values, const Material&, const LobeTables&) {
     return {Vec3<T>(values.color(slot_kd))};
   }
 

@@ -71,6 +71,17 @@ struct Ggx {
   }
 };
 
+/// (1 - cosine)^5, by which Schlick's Fresnel term goes from F0 to 1.
+template <class T>
+T schlick_weight(T cosine) {
+  const T m = std::clamp(T(1) - cosine, T(0), T(1));
+  return m * m * m * m * m;
+}
+template <class T>
+Vec3<T> schlick(const Vec3<T>& f0, T weight) {
+  return f0 * (T(1) - weight) + Vec3<T>(weight);
+}
+
 /// w mirrored in the unit vector h.
 template <class T>
 Vec3<T> reflect(const Vec3<T>& w, const Vec3<T>& h) {

@@ -20,13 +20,13 @@ enum MaterialTrait : uint32_t {
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as
 /// the models want them; the others only shape those.
 enum ParameterSlot : int {
-  slot_kd = 0,     ///< diffuse: albedo; microfacet: that of the base over 1 - the lobe's mean albedo;
-                   ///< dielectric: transmittance
-  slot_ks = 3,     ///< microfacet: F0; conductor: reflectance
+  slot_kd = 0,     ///< diffuse, principled: albedo; microfacet: that of the base over 1 - the lobe's mean
+                   ///< albedo; dielectric: transmittance
+  slot_ks = 3,     ///< microfacet, principled: F0; conductor: reflectance
   slot_alpha = 6,  ///< GGX width; 0 where the lobe is treated as perfectly smooth
   slot_emission = 7,
-  vertex_floats = 10,
   slot_metallic = 10,
+  vertex_floats = 11,
   slot_coverage = 11,
   parameter_floats = 12
 };
@@ -43,13 +43,20 @@ inline constexpr int albedo_row_steps = 256, first_albedo_row = 3;
 /// What a coat leaves for its base on the mean is taken for at least so much.
 inline constexpr float least_left_for_base = 1e-4f;
 
+/// The directional albedo of sheen, (1 - wi.h)^5 per steradian (Burley 2012, section 5.5), as a polynomial of
+/// the cosine: above the integral by at most 1e-4, so that what is left for the surface below is never too
+/// much.
+inline constexpr float sheen_albedo_terms[] = {0.08854f, -0.25093f, 0.27183f, -0.13747f, 0.02834f};
+
 struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
   float ior;
-  uint32_t type;        ///< MaterialType
-  uint32_t traits;      ///< MaterialTrait set
-  uint32_t albedo;      ///< microfacet: offset in floats into MaterialTables::albedos
+  float sheen, clearcoat, clearcoat_alpha;  ///< principled; of the last, the table is
+  uint32_t clearcoat_albedo;                ///< at this offset into MaterialTables::albedos
+  uint32_t type;                            ///< MaterialType
+  uint32_t traits;                          ///< MaterialTrait set
+  uint32_t albedo;      ///< microfacet, principled: offset in floats into MaterialTables::albedos
   float albedo_rows;    ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
   uint32_t detail;      ///< index + 1 into MaterialTables::details, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area

@@ -4,6 +4,7 @@
 
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
+#include "materials/principled.h"
 #include "materials/surface_values.h"
 
 namespace castray {
@@ -64,6 +65,12 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     const LobeAlbedo& lobe = lobes_.of(values[slot_alpha]);
     k.albedo = albedo_offset(values[slot_alpha], lobe);
     descriptor.finish(lobe, values.data());
+  }
+  if (m.type == MaterialType::principled) {
+    k.sheen = static_cast<float>(m.sheen);
+    k.clearcoat = static_cast<float>(m.clearcoat);
+    k.clearcoat_alpha = static_cast<float>(clearcoat_alpha(m));
+    k.clearcoat_albedo = albedo_offset(clearcoat_alpha(m), lobes_.of(clearcoat_alpha(m)));
   }
   detail.albedo = k.albedo;
   detail.albedo_rows = k.albedo_rows;

@@ -11,11 +11,6 @@ namespace {
 /// Of quadrature and interpolation. Taken off, so that what is left for the base is never too much.
 constexpr double error_bound = 2e-4;
 
-double schlick_weight(double cosine) {
-  const double m = 1 - std::min(cosine, 1.0), m2 = m * m;
-  return m2 * m2 * m;
-}
-
 /// The split albedo at one cosine, by the midpoint rule on the unit square of the lobe's own sampling, finer
 /// towards u.x = 1 where narrow lobes have their tail.
 LobeAlbedo::Node albedo_at(const Ggx<double>& ggx, double cosine) {

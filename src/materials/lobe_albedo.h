@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "castray/vec.h"
+#include "materials/kernel_material.h"
 
 namespace castray {
 
@@ -62,6 +63,20 @@ class LobeAlbedo {
   std::array<Node, intervals + 1> nodes_;
   Node mean_;
 };
+
+/// The tables of a material's lobes; null for lobes that it has not.
+struct LobeTables {
+  const LobeAlbedo *own = nullptr, *clearcoat = nullptr;
+};
+
+/// The albedo of a base of colour kd over what a coat of reflectance f0 leaves for it on the mean. Where that
+/// is less than least_left_for_base, all of it at grazing angles, the base gets only part of what is left: a
+/// quotient of such small numbers would be bright specks.
+inline Vec3d base_under(const Vec3d& kd, const Vec3d& f0, const LobeAlbedo& coat) {
+  const Vec3d left = coat.mean_left(f0);
+  const auto at_least = [](double x) { return std::max(x, double{least_left_for_base}); };
+  return kd / Vec3d(at_least(left.x), at_least(left.y), at_least(left.z));
+}
 
 /// Tables by alpha, each computed once. References stay valid.
 class LobeAlbedos {

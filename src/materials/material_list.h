@@ -9,6 +9,7 @@
 #include "materials/dielectric_lanes.h"
 #include "materials/diffuse_lanes.h"
 #include "materials/microfacet_lanes.h"
+#include "materials/principled_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -16,7 +17,7 @@ template <class... Models>
 struct ModelList {};
 
 /// The first one is so common that kernels do not ask whether it is there.
-inline constexpr ModelList<Diffuse, Conductor, Microfacet, Dielectric> all_models;
+inline constexpr ModelList<Diffuse, Conductor, Microfacet, Dielectric, Principled> all_models;
 
 }  // namespace castray::CASTRAY_ISA
 
@@ -28,11 +29,12 @@ inline constexpr ModelList<Diffuse, Conductor, Microfacet, Dielectric> all_model
 #include "materials/dielectric.h"
 #include "materials/diffuse.h"
 #include "materials/microfacet.h"
+#include "materials/principled.h"
 
 namespace castray {
 
 template <class T>
-using AnyBsdf = std::variant<Diffuse<T>, Conductor<T>, Microfacet<T>, Dielectric<T> >;
+using AnyBsdf = std::variant<Diffuse<T>, Conductor<T>, Microfacet<T>, Dielectric<T>, Principled<T> >;
 
 }  // namespace castray
 

@@ -17,9 +17,10 @@ class MaterialTable {
     for (const Material& m : materials) {
       if (has_lobe_rows(m) && !rows_) rows_.emplace();
       SurfaceValues<double> values(m);
-      lobes_.push_back(descriptor_of(m.type).finish && !has_lobe_rows(m) ? &albedos_.of(values.at(slot_alpha))
-                                                                         : nullptr);
-      bsdfs_.push_back(make(m, values, lobe_of(bsdfs_.size(), values)));
+      LobeTables& lobes = lobes_.emplace_back();
+      if (descriptor_of(m.type).finish && !has_lobe_rows(m)) lobes.own = &albedos_.of(values.at(slot_alpha));
+      if (m.type == MaterialType::principled) lobes.clearcoat = &albedos_.of(clearcoat_alpha(m));
+      bsdfs_.push_back(make(m, values, lobes_of(bsdfs_.size(), values)));
     }
   }
 
@@ -29,36 +30,38 @@ class MaterialTable {
   /// Where its parameters have these values.
   Bsdf<T> at(std::size_t material, const SurfaceValues<T>& values) const {
     SurfaceValues<double> exact(values);
-    const LobeAlbedo* lobe = lobe_of(material, exact);
-    return make(materials_[material], exact, lobe);
+    const LobeTables lobes = lobes_of(material, exact);
+    return make(materials_[material], exact, lobes);
   }
 
  private:
-  /// The table of a material's lobe, or null; rounds alpha where an image gives it.
-  const LobeAlbedo* lobe_of(std::size_t material, SurfaceValues<double>& values) const {
-    if (!has_lobe_rows(materials_[material])) return lobes_[material];
+  /// The tables of a material's lobes; rounds alpha where an image gives it.
+  LobeTables lobes_of(std::size_t material, SurfaceValues<double>& values) const {
+    LobeTables lobes = lobes_[material];
+    if (!has_lobe_rows(materials_[material])) return lobes;
     const int row = LobeAlbedoRows::row_of(values.at(slot_alpha));
     values.at(slot_alpha) = LobeAlbedoRows::alpha_of(row);
-    return &(*rows_)[row];
+    lobes.own = &(*rows_)[row];
+    return lobes;
   }
 
-  static Bsdf<T> make(const Material& m, const SurfaceValues<double>& values, const LobeAlbedo* lobe) {
-    return make_one_of(static_cast<const AnyBsdf<T>*>(nullptr), m, values, lobe);
+  static Bsdf<T> make(const Material& m, const SurfaceValues<double>& values, const LobeTables& lobes) {
+    return make_one_of(static_cast<const AnyBsdf<T>*>(nullptr), m, values, lobes);
   }
 
   template <class First, class... Others>
   static Bsdf<T> make_one_of(const std::variant<First, Others...>*, const Material& m,
-                             const SurfaceValues<double>& values, const LobeAlbedo* lobe) {
-    Bsdf<T> bsdf = First::make(values, m, lobe);
-    ((m.type == Others::descriptor().type ? void(bsdf = Others::make(values, m, lobe)) : void()), ...);
+                             const SurfaceValues<double>& values, const LobeTables& lobes) {
+    Bsdf<T> bsdf = First::make(values, m, lobes);
+    ((m.type == Others::descriptor().type ? void(bsdf = Others::make(values, m, lobes)) : void()), ...);
     return bsdf;
   }
 
   std::vector<Material> materials_;
   std::vector<Bsdf<T>> bsdfs_;
   LobeAlbedos albedos_;
-  std::optional<LobeAlbedoRows> rows_;    ///< where an image gives an alpha
-  std::vector<const LobeAlbedo*> lobes_;  ///< of each material, or null
+  std::optional<LobeAlbedoRows> rows_;  ///< where an image gives an alpha
+  std::vector<LobeTables> lobes_;       ///< of each material, without rows
 };
 
 }  // namespace castray

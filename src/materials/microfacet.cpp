@@ -7,7 +7,7 @@ const MaterialDescriptor& microfacet_descriptor() {
   static const MaterialDescriptor descriptor{
       .type = MaterialType::microfacet,
       .name = "microfacet",
-      .text = "A GGX coat over a diffuse base, blended with metal.",
+      .text = "A GGX coat over a diffuse base.",
       .formula = "F D G2 / (4 cos_i cos_o) + kd / pi (1 - E(cos_i)) (1 - E(cos_o)) / (1 - E_mean)",
       .keys = with_common_keys({{.name = "kd",
                                  .kind = Kind::color,
@@ -26,13 +26,6 @@ const MaterialDescriptor& microfacet_descriptor() {
                                  .slot = slot_ks,
                                  .text = "The coat's reflectance straight on [0, 0, 0].",
                                  .brief = true},
-                                {.name = "metallic",
-                                 .kind = Kind::number,
-                                 .field = &Material::metallic,
-                                 .range = unit_range,
-                                 .parameter = SurfaceParameter::metallic,
-                                 .slot = slot_metallic,
-                                 .text = "1: a metal of reflectance kd straight on, without a base [0]."},
                                 roughness_key(),
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
@@ -43,11 +36,8 @@ const MaterialDescriptor& microfacet_descriptor() {
             const auto vec = [&](int slot) {
               return Vec3d(values[slot], values[slot + 1], values[slot + 2]);
             };
-            const CoatAndBase mixed = mix_metal(vec(slot_kd), vec(slot_ks), values[slot_metallic], lobe);
-            for (int c = 0; c < 3; ++c) {
-              values[slot_kd + c] = mixed.base[c];
-              values[slot_ks + c] = mixed.f0[c];
-            }
+            const Vec3d base = base_under(vec(slot_kd), vec(slot_ks), lobe);
+            for (int c = 0; c < 3; ++c) values[slot_kd + c] = base[c];
           }};
   return descriptor;
 }

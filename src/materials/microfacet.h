@@ -12,20 +12,6 @@ namespace castray {
 
 const MaterialDescriptor& microfacet_descriptor();
 
-/// The coat's reflectance straight on, and the base's albedo over what the coat leaves on the mean.
-struct CoatAndBase {
-  Vec3d f0, base;
-};
-
-/// Blends the coated base with a metal whose reflectance is the base's colour. Where the coat leaves less
-/// than least_left_for_base on the mean, all of it at grazing angles, the base gets only part of what is
-/// left: a quotient of such small numbers would be bright specks.
-inline CoatAndBase mix_metal(const Vec3d& kd, const Vec3d& ks, double metallic, const LobeAlbedo& lobe) {
-  const Vec3d f0 = ks + (kd - ks) * metallic, left = lobe.mean_left(f0);
-  const auto at_least = [](double x) { return std::max(x, double{least_left_for_base}); };
-  return {f0, kd * (1 - metallic) / Vec3d(at_least(left.x), at_least(left.y), at_least(left.z))};
-}
-
 /// Cook and Torrance's: a GGX lobe with Schlick's Fresnel term, F0 = ks, over a diffuse base that gets what
 /// the lobe leaves (the energy-conserving, reciprocal coupling of Kelemen and Szirmay-Kalos 2001):
 ///
@@ -34,19 +20,18 @@ inline CoatAndBase mix_metal(const Vec3d& kd, const Vec3d& ks, double metallic, 
 /// with E the lobe's directional albedo. A lobe too narrow to evaluate is a mirror over the same base.
 template <class T>
 struct Microfacet {
-  Vec3<T> base;  ///< kd / (1 - E_mean); see mix_metal
+  Vec3<T> base;  ///< kd / (1 - E_mean); see base_under
   Vec3<T> f0;
   Ggx<T> ggx;
   const LobeAlbedo* albedo;  ///< of ggx.alpha; not owned
 
   static const MaterialDescriptor& descriptor() { return microfacet_descriptor(); }
-  static Microfacet make(const SurfaceValues<double>& values, const Material& m, const LobeAlbedo* lobe) {
-    const CoatAndBase mixed =
-        mix_metal(values.color(slot_kd), values.color(slot_ks), values.at(slot_metallic), *lobe);
-    return {Vec3<T>(mixed.base),
-            Vec3<T>(mixed.f0),
+  static Microfacet make(const SurfaceValues<double>& values, const Material& m, const LobeTables& lobes) {
+    const Vec3d kd = values.color(slot_kd), ks = values.color(slot_ks);
+    return {Vec3<T>(base_under(kd, ks, *lobes.own)),
+            Vec3<T>(ks),
             {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
-            lobe};
+            lobes.own};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
@@ -85,11 +70,7 @@ struct Microfacet {
   }
 
  private:
-  Vec3<T> fresnel(T cosine) const {
-    const T m = std::clamp(T(1) - cosine, T(0), T(1));
-    const T m5 = m * m * m * m * m;
-    return f0 * (T(1) - m5) + Vec3<T>(m5);
-  }
+  Vec3<T> fresnel(T cosine) const { return schlick(f0, schlick_weight(cosine)); }
 
   Vec3<T> left_for_base(const Vec3<T>& w) const { return albedo->left(w.z, f0); }
 

@@ -1,28 +1,12 @@
 #pragma once
 
-#include "materials/bsdf_sample_lanes.h"
+#include "materials/lobe_albedo_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
-CASTRAY_INLINE Vec schlick(Vec f0, Float cosine) {
-  const Float m = min(max(Float(1.f) - cosine, Float(0.f)), Float(1.f)), m2 = m * m, m5 = m2 * m2 * m;
-  return fma(f0, Float(1.f) - m5, Vec{m5, m5, m5});
-}
-
-CASTRAY_INLINE Vec one_minus(const Vec& v) { return {Float(1.f) - v.x, Float(1.f) - v.y, Float(1.f) - v.z}; }
-
-/// What the coat leaves for the base of light to or from a direction: 1 - E; see LobeAlbedo.
+/// What the coat leaves for the base of light to or from a direction.
 CASTRAY_INLINE Vec left_for_base(const Bsdf& b, Float cosine) {
-  const Uint i = to_uint(min(sqrt(cosine) * Float((float)albedo_intervals), Float(albedo_intervals - 1.f)));
-  const Float step(1.f / albedo_intervals);
-  const Float c0 = square(to_float(i) * step), c1 = square(to_float(i + 1u) * step);
-  const Float t = (cosine - c0) / (c1 - c0);
-  const Uint at = b.albedo + i;
-  const Float a0 = gather(b.albedos, &KernelAlbedo::a, at), a1 = gather(b.albedos, &KernelAlbedo::a, at + 1u);
-  const Float lost0 = gather(b.albedos, &KernelAlbedo::lost, at),
-              lost1 = gather(b.albedos, &KernelAlbedo::lost, at + 1u);
-  const Float lost = fma(t, lost1 - lost0, lost0);
-  return fma(one_minus(b.ks), fma(t, a1 - a0, a0), Vec{lost, lost, lost});
+  return left_by_lobe(b.albedos, b.albedo, b.ks, cosine);
 }
 
 /// How often the lobe is sampled; see Microfacet of microfacet.h.
@@ -60,24 +44,14 @@ struct Microfacet : ModelDefaults {
     return choose(to_lobe & b.smooth(), mirror, rough);
   }
 
-  /// mix_metal of microfacet.h; where an image gives alpha, that of the nearest row of LobeAlbedoRows.
+  /// base_under of lobe_albedo.h.
   CASTRAY_INLINE static void finish(const KernelDetail& d, const KernelAlbedo* albedos, Float* value) {
-    Uint at(d.albedo);
-    if (d.albedo_rows > 0) {
-      const Uint row = to_uint(fma(sqrt(value[slot_alpha]), Float(d.albedo_rows), Float(0.5f)));
-      const Float roughness = to_float(row) * Float(1.f / albedo_row_steps);
-      value[slot_alpha] = roughness * roughness;
-      at = at + row * uint32_t{albedo_floats};
-    }
-    const Float mean_a = gather(albedos, &KernelAlbedo::mean_a, at),
-                mean_lost = gather(albedos, &KernelAlbedo::mean_lost, at);
-    const Float metallic = value[slot_metallic];
-    for (int c = 0; c < 3; ++c) {
-      const Float kd = value[slot_kd + c], ks = fma(kd - value[slot_ks + c], metallic, value[slot_ks + c]);
-      const Float left = fma(Float(1.f) - ks, mean_a, mean_lost);
-      value[slot_ks + c] = ks;
-      value[slot_kd + c] = kd * (Float(1.f) - metallic) / max(left, Float(least_left_for_base));
-    }
+    const Uint albedo = round_alpha_to_row(d, value);
+    const auto color = [&](int slot) { return Vec{value[slot], value[slot + 1], value[slot + 2]}; };
+    const Vec base = base_under(albedos, albedo, color(slot_kd), color(slot_ks));
+    value[slot_kd] = base.x;
+    value[slot_kd + 1] = base.y;
+    value[slot_kd + 2] = base.z;
   }
 };
 

@@ -33,9 +33,15 @@ struct NumberKey {
   double greatest;
 };
 constexpr NumberKey number_keys[] = {
-    {"ns", &MtlMaterial::ns, no_limit}, {"ni", &MtlMaterial::ni, no_limit},
-    {"d", &MtlMaterial::dissolve, 1},   {"tr", &MtlMaterial::transparency, 1},
-    {"pr", &MtlMaterial::roughness, 1}, {"pm", &MtlMaterial::metallic, 1},
+    {"ns", &MtlMaterial::ns, no_limit},
+    {"ni", &MtlMaterial::ni, no_limit},
+    {"d", &MtlMaterial::dissolve, 1},
+    {"tr", &MtlMaterial::transparency, 1},
+    {"pr", &MtlMaterial::roughness, 1},
+    {"pm", &MtlMaterial::metallic, 1},
+    {"ps", &MtlMaterial::sheen, 1},
+    {"pc", &MtlMaterial::clearcoat, 1},
+    {"pcr", &MtlMaterial::clearcoat_roughness, 1},
 };
 
 struct MapKey {
@@ -52,7 +58,7 @@ constexpr MapKey map_keys[] = {
 };
 
 /// What would change the picture, but is not done: numbers unless they are 0, and images.
-constexpr std::string_view numbers_not_done[] = {"ps", "pc", "aniso"};
+constexpr std::string_view numbers_not_done[] = {"aniso"};
 constexpr std::string_view maps_not_done[] = {"map_ps",     "map_pc", "map_pcr",  "map_aniso",
                                               "map_anisor", "disp",   "map_disp", "decal"};
 

@@ -22,7 +22,8 @@ struct MtlMaterial {
   std::string name;
   SourcePlace place;
   std::optional<Vec3d> kd{}, ks{}, ke{}, tf{};
-  std::optional<double> ns{}, ni{}, dissolve{}, transparency{}, roughness{}, metallic{};
+  std::optional<double> ns{}, ni{}, dissolve{}, transparency{}, roughness{}, metallic{}, sheen{}, clearcoat{},
+      clearcoat_roughness{};
   std::optional<int> illum{};
   std::array<std::optional<TextureStatement>, mtl_maps> maps{};
 

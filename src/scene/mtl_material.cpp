@@ -155,7 +155,12 @@ class Meaning {
   }
 
   /// Whether the material is told by metalness, as Blender and others do in MTL's extension for PBR.
-  bool is_principled() const { return blender_ || mtl_.metallic || is_mapped(MtlMap::metallic); }
+  bool is_principled() const {
+    return blender_ || mtl_.metallic || is_mapped(MtlMap::metallic) || has_layers();
+  }
+
+  /// Sheen or a clear coat.
+  bool has_layers() const { return mtl_.sheen.value_or(0) > 0 || mtl_.clearcoat.value_or(0) > 0; }
 
   /// What the layer over the base reflects straight on.
   Vec3d specular(bool mapped) const {
@@ -177,12 +182,13 @@ class Meaning {
         illum_is({3, 5}) && !is_principled() && !(has_base && max_component(material_.kd) > 0);
     if (mirror_only && max_component(layer) > 0) {
       set_conductor(layer, ks);
-    } else if (metal() == 1 && !is_mapped(MtlMap::metallic)) {
+    } else if (metal() == 1 && !is_mapped(MtlMap::metallic) && !has_layers()) {
       set_conductor(material_.kd, kd);
-    } else if (max_component(layer) > 0 || metal() > 0) {
+    } else if (metal() > 0 || has_layers()) {
+      set_principled(layer);
+    } else if (max_component(layer) > 0) {
       material_.type = MaterialType::microfacet;
       material_.ks = layer;
-      read_metal();
     } else {
       material_.map(ks) = {};
     }
@@ -194,15 +200,15 @@ class Meaning {
     material_.map(reflectance) = material_.map(source);
   }
 
-  /// A constant blend of constant colours needs no metalness any more.
-  void read_metal() {
+  void set_principled(const Vec3d& layer) {
+    material_.type = MaterialType::principled;
+    material_.ks = layer;
     const bool mapped = set_map(metallic, MtlMap::metallic, ColorSpace::linear);
-    material_.metallic = metal();
+    material_.metallic = mtl_.metallic.value_or(0);
     if (mapped && material_.metallic == 0) material_.metallic = 1;
-    if (mapped || material_.map(kd).used() || material_.map(ks).used() || material_.vertex_colors) return;
-    material_.ks = material_.ks * (1 - material_.metallic) + material_.kd * material_.metallic;
-    material_.kd = material_.kd * (1 - material_.metallic);
-    material_.metallic = 0;
+    material_.sheen = mtl_.sheen.value_or(0);
+    material_.clearcoat = mtl_.clearcoat.value_or(0);
+    material_.clearcoat_roughness = mtl_.clearcoat_roughness.value_or(0);
   }
 
   void read_glass() {

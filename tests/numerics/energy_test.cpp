@@ -37,6 +37,16 @@ std::vector<Named> white_materials() {
     list.push_back(
         {fmt::format("coat {}", r),
          {.name = {}, .type = MaterialType::microfacet, .kd = Vec3d(1), .ks = Vec3d(0.04), .alpha = alpha}});
+    list.push_back({fmt::format("principled {}", r),
+                    {.name = {},
+                     .type = MaterialType::principled,
+                     .kd = Vec3d(1),
+                     .ks = Vec3d(0.04),
+                     .alpha = alpha,
+                     .metallic = 0.5,
+                     .sheen = 1,
+                     .clearcoat = 1,
+                     .clearcoat_roughness = r}});
     list.push_back({fmt::format("dielectric {}", r),
                     {.name = {}, .type = MaterialType::dielectric, .alpha = alpha, .ior = 1.5}});
   }
@@ -78,10 +88,10 @@ double quadrature_albedo(const Bsdf<double>& bsdf, const Vec3d& wo) {
 }
 
 /// Whether a material that absorbs nothing has albedo 1: rough facets lose what they reflect to one another,
-/// unless a diffuse base takes it.
+/// unless a diffuse base takes it. Coat and what is under it lose what goes to and fro between them.
 bool is_lossless(const Material& material) {
   return material.type == MaterialType::diffuse || material.type == MaterialType::microfacet ||
-         material.alpha < 1e-5;
+         (material.type != MaterialType::principled && material.alpha < 1e-5);
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ Scene with_everything() {
   Scene scene = with_glowing_images({"light", "red"});
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     Material m = scene.materials[i];
-    m.type = MaterialType::microfacet;
+    m.type = MaterialType::principled;
     m.ks = {0.5, 0.3, 0.2};
     m.alpha = 0.5;
     m.metallic = 0.7;
@@ -130,9 +130,21 @@ TEST_CASE("the wavefront agrees with castRay on numbers by image", "[statistical
                 m = {.name = "glass", .type = MaterialType::dielectric, .alpha = 1};
                 put_image(s, m, SurfaceParameter::alpha, 0.2, 0.6);
               }));
+  check_scene("clear coat, sheen and roughness", box_with([](Scene& s, Material& m) {
+                m = {.name = "paint",
+                     .type = MaterialType::principled,
+                     .kd = {0.9, 0.1, 0.1},
+                     .ks = Vec3d(0.04),
+                     .alpha = 1,
+                     .metallic = 0.5,
+                     .sheen = 0.5,
+                     .clearcoat = 0.8,
+                     .clearcoat_roughness = 0.3};
+                put_image(s, m, SurfaceParameter::roughness, 0.3, 1);
+              }));
   check_scene("metallic", box_with([](Scene& s, Material& m) {
                 m = {.name = "blend",
-                     .type = MaterialType::microfacet,
+                     .type = MaterialType::principled,
                      .kd = {0.9, 0.6, 0.2},
                      .ks = Vec3d(0.04),
                      .alpha = 0.3,

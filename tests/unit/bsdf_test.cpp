@@ -29,6 +29,19 @@ Material microfacet(double alpha, double kd = 0.5, double ks = 0.3) {
       .name = {}, .type = MaterialType::microfacet, .kd = Vec3d(kd), .ks = {ks, ks, ks / 2}, .alpha = alpha};
 }
 
+/// Metal, coated base, sheen and clear coat, some of each.
+Material principled(double alpha, double kd = 0.5) {
+  return {.name = {},
+          .type = MaterialType::principled,
+          .kd = {kd, kd, kd / 2},
+          .ks = Vec3d(0.1),
+          .alpha = alpha,
+          .metallic = 0.3,
+          .sheen = 0.8,
+          .clearcoat = 0.6,
+          .clearcoat_roughness = 0.5};
+}
+
 Material dielectric(double alpha, double ior = 1.5) {
   return {.name = {}, .type = MaterialType::dielectric, .alpha = alpha, .ior = ior};
 }
@@ -39,6 +52,7 @@ std::vector<Named> rough_materials() {
     list.push_back({fmt::format("conductor {}", alpha), conductor(alpha)});
     list.push_back({fmt::format("microfacet {}", alpha), microfacet(alpha)});
     list.push_back({fmt::format("dielectric {}", alpha), dielectric(alpha)});
+    list.push_back({fmt::format("principled {}", alpha), principled(alpha)});
   }
   return list;
 }
@@ -127,7 +141,7 @@ Vec3d albedo_by_quadrature(const Bsdf<double>& bsdf, double theta_o) {
 
 }  // namespace
 
-// 13 materials, 4 viewers, 2 precisions: 104 tests, each at 1e-5, so a false alarm once in a thousand seeds.
+// 17 materials, 4 viewers, 2 precisions: 136 tests, each at 1e-5, so a false alarm once in 700 seeds.
 TEST_CASE("samples are distributed as the density says", "[bsdf]") {
   std::uint32_t key = 1;
   for (const Named& named : rough_materials()) {
@@ -181,10 +195,10 @@ TEST_CASE("BSDFs are reciprocal, but for the scale of radiance in media", "[bsdf
   }
 }
 
-// 10 angles, 5 widths, 2 materials, 3 channels: 300 z-tests at 5 sigma, a false alarm once in 6000 seeds.
+// 10 angles, 5 widths, 3 materials, 3 channels: 450 z-tests at 5 sigma, a false alarm once in 4000 seeds.
 TEST_CASE("albedo by sampling equals albedo by quadrature", "[bsdf]") {
   for (const double alpha : {0.1, 0.2, 0.4, 0.7, 1.0})
-    for (const Material& material : {conductor(alpha), microfacet(alpha)}) {
+    for (const Material& material : {conductor(alpha), microfacet(alpha), principled(alpha)}) {
       const MaterialTable<double> exact({material});
       const MaterialTable<float> table({material});
       for (int angle = 0; angle < 10; ++angle) {
@@ -216,6 +230,57 @@ TEST_CASE("no BSDF reflects more than it receives", "[bsdf]") {
         CHECK(albedo.x == Approx(1).margin(1e-3));  // kd = 1: the base reflects all that the lobe leaves
       }
     }
+}
+
+TEST_CASE("a principled material is what its parts are", "[bsdf]") {
+  const Vec3d wo = direction(0.7, 0.4);
+  const auto f = [&](Material m, const Vec3d& wi) {
+    return MaterialTable<double>({std::move(m)})[0].evaluate(wo, wi);
+  };
+  Material m = principled(0.3);
+  m.sheen = m.clearcoat = 0;
+  Material coated = microfacet(0.3), metal = microfacet(0.3, 0);
+  coated.kd = m.kd, coated.ks = m.ks, metal.ks = m.kd;
+  for (const double theta : {0.1, 0.7, 1.4}) {
+    const Vec3d wi = direction(theta, 3.0);
+    const Vec3d blend = f(coated, wi) * (1 - m.metallic) + f(metal, wi) * m.metallic;
+    for (int c = 0; c < 3; ++c) CHECK(f(m, wi)[c] == Approx(blend[c]).epsilon(1e-9));
+  }
+  // Where nothing is reflected inside, clear coat and sheen are seen alone.
+  Material black{.name = {}, .type = MaterialType::principled, .kd = Vec3d(0), .alpha = 1};
+  black.clearcoat = 0.5, black.clearcoat_roughness = 0.6;
+  Material outer = microfacet(0.36, 0);
+  outer.ks = Vec3d(0.04);
+  const Vec3d mirrored(-wo.x, -wo.y, wo.z);
+  Material bare = black;
+  bare.clearcoat = 0;
+  const double inner = f(bare, mirrored).x;
+  CHECK(f(black, mirrored).x == Approx(0.5 * f(outer, mirrored).x).margin(inner));
+  CHECK(f(black, mirrored).x > 0.5 * f(outer, mirrored).x);
+  bare.sheen = 1;
+  const Vec3d grazing = direction(1.5, 3.5), h = normalize(wo + grazing);
+  const double sheen = std::pow(1 - dot(wo, h), 5);
+  bare.alpha = 0.001;  // its own lobe is elsewhere
+  CHECK(f(bare, grazing).x == Approx(sheen).epsilon(1e-3));
+}
+
+TEST_CASE("a white principled material never reflects more than it receives", "[bsdf]") {
+  for (const double alpha : {0.2, 0.7})
+    for (const double metallic : {0.0, 0.5, 1.0})
+      for (const double layers : {0.0, 1.0}) {
+        Material m = principled(alpha, 1);
+        m.kd = Vec3d(1);
+        m.metallic = metallic;
+        m.sheen = m.clearcoat = layers;
+        const MaterialTable<double> table({m});
+        for (int angle = 0; angle < 10; ++angle) {
+          const double albedo = albedo_by_quadrature(table[0], (angle + 0.2) / 10 * pi<double> / 2).x;
+          CAPTURE(alpha, metallic, layers, angle, albedo);
+          CHECK(albedo <= 1 + 1e-5);
+          if (metallic == 0 && layers == 0) CHECK(albedo == Approx(1).margin(1e-3));
+          if (metallic == 0) CHECK(albedo > 0.85);  // coat and base lose what goes to and fro between them
+        }
+      }
 }
 
 TEST_CASE("smooth lobes are mirrors, refraction obeys Snell's law, Fresnel's weights sum to one", "[bsdf]") {

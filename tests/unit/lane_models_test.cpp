@@ -23,6 +23,10 @@ Material material(MaterialType type, double alpha) {
   m.reflectance = {0.9, 0.7, 0.3};
   m.transmittance = {0.9, 0.6, 0.3};
   m.alpha = alpha;
+  m.metallic = 0.4;
+  m.sheen = 0.7;
+  m.clearcoat = 0.8;
+  m.clearcoat_roughness = 0.4;
   return m;
 }
 
@@ -30,8 +34,13 @@ std::vector<Material> all_materials() {
   std::vector<Material> list;
   for (const MaterialDescriptor* descriptor : material_descriptors())
     for (const double alpha : {0.0, 0.05, 0.3, 1.0}) list.push_back(material(descriptor->type, alpha));
-  list.push_back(material(MaterialType::microfacet, 0.2));
-  list.back().metallic = 0.6;
+  for (const double metallic : {0.0, 1.0}) {
+    list.push_back(material(MaterialType::principled, 0.2));
+    list.back().metallic = metallic;
+    list.back().sheen = list.back().clearcoat = 0;
+  }
+  list.push_back(material(MaterialType::principled, 0.2));
+  list.back().clearcoat_roughness = 0;
   list.push_back(material(MaterialType::microfacet, 0.2));
   list.back().ks = Vec3d(1);
   list.push_back(material(MaterialType::dielectric, 0.3));

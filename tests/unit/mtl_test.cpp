@@ -99,10 +99,11 @@ TEST_CASE("glass is what is meant as glass, and what is partly there is coverage
 
 TEST_CASE("metalness blends") {
   const Material metal = read("Kd .8 .28 .1\nKs .25 .25 .25\nPr .4\nPm .9\nillum 3\n");
-  CHECK(metal.type == MaterialType::microfacet);
+  CHECK(metal.type == MaterialType::principled);
   CHECK(metal.alpha == Approx(0.16));
-  check_near(metal.kd, Vec3d{0.8, 0.28, 0.1} * 0.1);
-  check_near(metal.ks, Vec3d{0.8, 0.28, 0.1} * 0.9 + Vec3d(0.25 * 0.08 * 0.1));
+  CHECK(metal.metallic == 0.9);
+  check_near(metal.kd, {0.8, 0.28, 0.1});
+  check_near(metal.ks, Vec3d(0.25 * 0.08));
   CHECK(read("Kd .8 .28 .1\nPm 1\n").type == MaterialType::conductor);
   check_near(read("Kd .5\nPm 0\nPr .5\n").ks, Vec3d(0.04));
   const Material textured = read("map_Kd grey.pfm\nPm .5\nPr .5\n");
@@ -110,9 +111,23 @@ TEST_CASE("metalness blends") {
   const Material mapped = read("Kd .5\nmap_Pm grey.pfm\nmap_Pr -mm .1 .5 grey.pfm\n");
   CHECK(mapped.metallic == 1);
   CHECK(mapped.map(metallic).used());
+  CHECK(read("Kd .5\nmap_Pm lost.pfm\n").metallic == 0);
   CHECK(mapped.alpha == 1);
   CHECK(mapped.map(roughness).base == 0.1f);
   CHECK(mapped.map(roughness).gain == 0.5f);
+}
+
+TEST_CASE("Pc, Pcr and Ps are a clear coat and sheen") {
+  const Material paint = read("Kd .6 .1 .1\nPr .5\nPm .25\nPs .3\nPc .8\nPcr .2\n");
+  CHECK(paint.type == MaterialType::principled);
+  CHECK(paint.metallic == 0.25);
+  CHECK(paint.sheen == 0.3);
+  CHECK(paint.clearcoat == 0.8);
+  CHECK(paint.clearcoat_roughness == 0.2);
+  check_near(paint.ks, Vec3d(0.04));
+  CHECK(read("Kd .6 .1 .1\nPm 1\nPc .8\n").type == MaterialType::principled);
+  CHECK(read("Kd .6 .1 .1\nPs .1\n").type == MaterialType::principled);
+  CHECK(read("Kd .6 .1 .1\nPs 0\nPc 0\nPcr .03\n").type == MaterialType::diffuse);
 }
 
 TEST_CASE("files of Blender are read by its own convention") {
@@ -208,7 +223,8 @@ TEST_CASE("options of images") {
 }
 
 TEST_CASE("what is not done and would be seen is told") {
-  CHECK(Read("Pc .5\n").warning() == "Pc is not done");
+  CHECK(Read("aniso .5\n").warning() == "aniso is not done");
+  CHECK(Read("map_Pc grey.pfm\n").warning() == "map_Pc is not done");
   CHECK(Read("Pc 0\nPs 0\naniso 0\nPcr .03\nKa 1 1 1\nsharpness 60\n").warning().empty());
   CHECK(Read("disp grey.pfm\n").warning() == "disp is not done");
 }

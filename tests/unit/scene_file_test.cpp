@@ -145,7 +145,7 @@ TEST_CASE("parameters of materials may be images") {
   const TemporaryFolder folder;
   std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
   write_image(folder / "t.png", Image(2, 2));
-  std::ofstream(folder / "s.json") << R"({ "materials": { "m": { "type": "microfacet",
+  std::ofstream(folder / "s.json") << R"({ "materials": { "m": { "type": "principled",
     "kd": { "image": "t.png", "factor": [0.5, 0.25, 1], "scale": [2, 3], "offset": [0.5, 0], "clamp": true },
     "ks": { "image": "t.png" }, "roughness": { "image": "t.png", "channel": "green", "factor": 0.5 },
     "metallic": 0.5, "normal_map": { "image": "t.png", "gain": 0.5 },

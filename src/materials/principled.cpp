@@ -1,0 +1,62 @@
+#include "materials/principled.h"
+
+namespace castray {
+
+const MaterialDescriptor& principled_descriptor() {
+  using Kind = MaterialKey::Kind;
+  static const MaterialDescriptor descriptor{
+      .type = MaterialType::principled,
+      .name = "principled",
+      .text = "A blend of metal and coated base, under sheen and a clear coat.",
+      .formula = "c f_c + C(cos_i) C(cos_o) (s (1 - wi.h)^5 + S(cos_i) S(cos_o) f_b)",
+      .keys = with_common_keys(
+          {{.name = "kd",
+            .kind = Kind::color,
+            .field = &Material::kd,
+            .range = unit_range,
+            .parameter = SurfaceParameter::kd,
+            .slot = slot_kd,
+            .text = "Albedo of the base, and the metal's reflectance straight on [0.5, 0.5, 0.5].",
+            .brief = true},
+           vertex_colors_key(),
+           {.name = "ks",
+            .kind = Kind::color,
+            .field = &Material::ks,
+            .range = unit_range,
+            .parameter = SurfaceParameter::ks,
+            .slot = slot_ks,
+            .text = "Reflectance straight on of what is no metal [0, 0, 0].",
+            .brief = true},
+           {.name = "metallic",
+            .kind = Kind::number,
+            .field = &Material::metallic,
+            .range = unit_range,
+            .parameter = SurfaceParameter::metallic,
+            .slot = slot_metallic,
+            .text = "The metal's share [0].",
+            .brief = true},
+           roughness_key(),
+           alpha_key(),
+           {.name = "sheen",
+            .kind = Kind::number,
+            .field = &Material::sheen,
+            .range = unit_range,
+            .text = "Of cloth, at grazing angles, on what is no metal [0]."},
+           {.name = "clearcoat",
+            .kind = Kind::number,
+            .field = &Material::clearcoat,
+            .range = unit_range,
+            .text = "The share of the surface that a coat of reflectance 0.04 covers [0]."},
+           {.name = "clearcoat_roughness",
+            .kind = Kind::number,
+            .field = &Material::clearcoat_roughness,
+            .range = unit_range,
+            .text = "Of the coat; its alpha is the square, at least 0.001 [0]."}}),
+      .traits = [](const Material& m) -> std::uint32_t {
+        return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u);
+      },
+      .finish = [](const LobeAlbedo&, double*) {}};
+  return descriptor;
+}
+
+}  // namespace castray

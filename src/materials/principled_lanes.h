@@ -1,0 +1,100 @@
+#pragma once
+
+#include "materials/lobe_albedo_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Metal and coated base under sheen and a clear coat; see principled.h.
+struct Principled : ModelDefaults {
+  static constexpr MaterialType type = MaterialType::principled;
+
+  CASTRAY_INLINE static BsdfValue evaluate(const Bsdf& b, Vec wo, Vec wi) {
+    return Layers(b, wo).evaluate(wi);
+  }
+
+  CASTRAY_INLINE static BsdfSample sample(const Bsdf& b, Vec wo, Float choice, Float u, Float v) {
+    const Layers layers(b, wo);
+    const Mask of_coat = choice < layers.coat_share;
+    const Mask of_lobe = ~of_coat & (choice < layers.coat_share + layers.lobe_share);
+    const Float alpha = select(of_coat, b.layers.clearcoat_alpha, b.alpha);
+    const Vec h = ggx_sample_normal(alpha, wo, u, v, ggx_cap_scale(alpha, wo));
+    const Vec wi = select(of_coat | of_lobe, normalize(reflect(wo, h)), cosine_hemisphere(u, v));
+    const BsdfSample rough = weigh(choose(wi.z > Float(0.f), layers.evaluate(wi), no_value()), wi);
+    const Float passed = layers.left_by_coat(wo) * layers.left_by_sheen(wo);
+    const BsdfSample mirror{{-wo.x, -wo.y, wo.z},
+                            schlick(layers.f0, wo.z) * (passed * passed / layers.lobe_share),
+                            layers.lobe_share,
+                            Mask(true),
+                            Float(1.f)};
+    return choose(of_lobe & b.smooth(), mirror, rough);
+  }
+
+  CASTRAY_INLINE static void finish(const KernelDetail& d, const KernelAlbedo*, Float* value) {
+    round_alpha_to_row(d, value);
+  }
+
+ private:
+  /// The layers as they are seen from wo.
+  struct Layers {
+    const Bsdf& b;
+    Vec wo, f0, base, left_o;
+    Float sheen, coat_share, lobe_share;
+
+    CASTRAY_INLINE Layers(const Bsdf& bsdf, Vec from) : b(bsdf), wo(from) {
+      const Float metallic = b.layers.metallic, rest = Float(1.f) - metallic;
+      f0 = fma(b.kd - b.ks, metallic, b.ks);
+      base = base_under(b.albedos, b.albedo, b.kd, b.ks) * rest;
+      sheen = b.layers.sheen * rest;
+      left_o = left_by_lobe(b.albedos, b.albedo, b.ks, wo.z);
+      find_shares();
+    }
+
+    CASTRAY_INLINE void find_shares() {
+      const Float through_sheen = left_by_sheen(wo), through_coat = left_by_coat(wo), quarter(0.25f);
+      const Float lobe = luminance(one_minus(left_by_lobe(b.albedos, b.albedo, f0, wo.z))) * through_sheen;
+      const Float below = fma(luminance(base * left_o), through_sheen, Float(1.f) - through_sheen);
+      const Float reflected = Float(1.f) - through_coat;
+      coat_share = max(reflected / fma(through_coat, lobe + below, reflected), reflected * quarter);
+      lobe_share = max(lobe / (lobe + below), lobe * quarter) * (Float(1.f) - coat_share);
+    }
+
+    CASTRAY_INLINE BsdfValue evaluate(Vec wi) const {
+      const Vec h = normalize(wo + wi);
+      const Float wo_h = dot(wo, h), coat_alpha = b.layers.clearcoat_alpha;
+      const Lobe inner = lobe(b.alpha, h, wi), outer = lobe(coat_alpha, h, wi);
+      const Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
+      const Mask smooth = b.smooth();
+      const Vec under = diffuse + select(smooth, black(), schlick(f0, wo_h) * inner.value);
+      const Float cloth = sheen * schlick(black(), wo_h).x;
+      const Vec through = fma(under, left_by_sheen(wo) * left_by_sheen(wi), Vec{cloth, cloth, cloth});
+      const Float coat = b.layers.clearcoat * schlick(coat_f0(), wo_h).x * outer.value;
+      const Vec f = fma(through, left_by_coat(wo) * left_by_coat(wi), Vec{coat, coat, coat});
+      const Float base_share = Float(1.f) - coat_share - lobe_share;
+      const Float pdf = coat_share * outer.pdf + base_share * wi.z * Float(1.f / pi) +
+                        select(smooth, Float(0.f), lobe_share * inner.pdf);
+      return {f * wi.z, pdf};
+    }
+
+    CASTRAY_INLINE Float left_by_sheen(Vec w) const {
+      Float albedo(sheen_albedo_terms[4]);
+      for (int i = 3; i >= 0; --i) albedo = fma(albedo, w.z, Float(sheen_albedo_terms[i]));
+      return Float(1.f) - sheen * albedo;
+    }
+    CASTRAY_INLINE Float left_by_coat(Vec w) const {
+      const Vec left = left_by_lobe(b.albedos, b.layers.clearcoat_albedo, coat_f0(), w.z);
+      return Float(1.f) - b.layers.clearcoat * (Float(1.f) - left.x);
+    }
+
+   private:
+    struct Lobe {
+      Float value, pdf;  ///< without Fresnel's term
+    };
+    CASTRAY_INLINE Lobe lobe(Float alpha, Vec h, Vec wi) const {
+      return {ggx_distribution(alpha, h) * ggx_shadowing_over_cos(alpha, wo, wi),
+              ggx_reflection_pdf(alpha, wo, h, ggx_cap_scale(alpha, wo))};
+    }
+    CASTRAY_INLINE static Vec coat_f0() { return {Float(0.04f), Float(0.04f), Float(0.04f)}; }
+  };
+};
+
+}  // namespace castray::CASTRAY_ISA
