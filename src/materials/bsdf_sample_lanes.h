@@ -9,12 +9,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// What `principled` has besides; set in lanes of that type only.
-struct PrincipledLayers {
-  Float metallic, sheen, clearcoat, clearcoat_alpha;
-  Uint clearcoat_albedo;  ///< offset of its table
-};
-
 /// How a surface reflects at a point.
 struct Bsdf {
   Uint type;    ///< MaterialType
@@ -23,7 +17,9 @@ struct Bsdf {
   Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side
   Uint albedo;  ///< microfacet, principled: offset of its lobe's table
   const KernelAlbedo* albedos;
-  PrincipledLayers layers;
+  Float metallic;  ///< principled, in whose lanes alone it is set
+  Uint record;     ///< offset of the material
+  const KernelMaterial* materials;
 
   CASTRAY_INLINE Mask is(MaterialType t) const { return type == Uint((uint32_t)t); }
   CASTRAY_INLINE Mask smooth() const { return alpha <= Float(0.f); }

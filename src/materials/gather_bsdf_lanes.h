@@ -5,21 +5,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-template <uint32_t features>
-CASTRAY_INLINE PrincipledLayers gather_layers(const KernelMaterial* table, Uint record,
-                                              const Parameters<features>& p) {
-  PrincipledLayers l;
-  if constexpr (features & feature_detail)
-    l.metallic = p.value[slot_metallic];
-  else
-    l.metallic = gather(fields_of(table, &KernelMaterial::value) + slot_metallic, record);
-  l.sheen = gather(table, &KernelMaterial::sheen, record);
-  l.clearcoat = gather(table, &KernelMaterial::clearcoat, record);
-  l.clearcoat_alpha = gather(table, &KernelMaterial::clearcoat_alpha, record);
-  l.clearcoat_albedo = gather(table, &KernelMaterial::clearcoat_albedo, record);
-  return l;
-}
-
 /// The BSDF of each lane. `material`: the offset of its record, with the top bit where it is seen from the
 /// front.
 template <uint32_t features>
@@ -34,17 +19,21 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
   b.eta = select(front, ior, Float(1.f) / ior);
   b.albedo = gather(table, &KernelMaterial::albedo, record);
   b.albedos = tables.albedos;
+  b.record = record;
+  b.materials = table;
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];
     const Uint row =
         to_uint(fma(sqrt(b.alpha), gather(table, &KernelMaterial::albedo_rows, record), Float(0.5f)));
     b.albedo = b.albedo + row * uint32_t{albedo_floats};
+    b.metallic = p.value[slot_metallic];
   } else {
     b.ks = gather_vec(fields_of(table, &KernelMaterial::value) + slot_ks, record);
     b.alpha = gather(fields_of(table, &KernelMaterial::value) + slot_alpha, record);
+    if (any(b.is(MaterialType::principled)))
+      b.metallic = gather(fields_of(table, &KernelMaterial::value) + slot_metallic, record);
   }
-  if (any(b.is(MaterialType::principled))) b.layers = gather_layers<features>(table, record, p);
   return b;
 }
 

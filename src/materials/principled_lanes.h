@@ -4,19 +4,20 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Metal and coated base under sheen and a clear coat; see principled.h.
+/// Metal and coated base under sheen and a clear coat; see principled.h. Its functions are calls, with all by
+/// value: inlined, their many numbers would take the registers of all other models.
 struct Principled : ModelDefaults {
   static constexpr MaterialType type = MaterialType::principled;
 
-  CASTRAY_INLINE static BsdfValue evaluate(const Bsdf& b, Vec wo, Vec wi) {
+  static __attribute__((noinline)) BsdfValue evaluate(Bsdf b, Vec wo, Vec wi) {
     return Layers(b, wo).evaluate(wi);
   }
 
-  CASTRAY_INLINE static BsdfSample sample(const Bsdf& b, Vec wo, Float choice, Float u, Float v) {
+  static __attribute__((noinline)) BsdfSample sample(Bsdf b, Vec wo, Float choice, Float u, Float v) {
     const Layers layers(b, wo);
     const Mask of_coat = choice < layers.coat_share;
     const Mask of_lobe = ~of_coat & (choice < layers.coat_share + layers.lobe_share);
-    const Float alpha = select(of_coat, b.layers.clearcoat_alpha, b.alpha);
+    const Float alpha = select(of_coat, layers.coat_alpha, b.alpha);
     const Vec h = ggx_sample_normal(alpha, wo, u, v, ggx_cap_scale(alpha, wo));
     const Vec wi = select(of_coat | of_lobe, normalize(reflect(wo, h)), cosine_hemisphere(u, v));
     const BsdfSample rough = weigh(choose(wi.z > Float(0.f), layers.evaluate(wi), no_value()), wi);
@@ -38,13 +39,17 @@ struct Principled : ModelDefaults {
   struct Layers {
     const Bsdf& b;
     Vec wo, f0, base, left_o;
-    Float sheen, coat_share, lobe_share;
+    Float sheen, coat, coat_alpha, coat_share, lobe_share;
+    Uint coat_albedo;
 
     CASTRAY_INLINE Layers(const Bsdf& bsdf, Vec from) : b(bsdf), wo(from) {
-      const Float metallic = b.layers.metallic, rest = Float(1.f) - metallic;
-      f0 = fma(b.kd - b.ks, metallic, b.ks);
+      const Float rest = Float(1.f) - b.metallic;
+      f0 = fma(b.kd - b.ks, b.metallic, b.ks);
       base = base_under(b.albedos, b.albedo, b.kd, b.ks) * rest;
-      sheen = b.layers.sheen * rest;
+      sheen = field(&KernelMaterial::sheen) * rest;
+      coat = field(&KernelMaterial::clearcoat);
+      coat_alpha = field(&KernelMaterial::clearcoat_alpha);
+      coat_albedo = gather(b.materials, &KernelMaterial::clearcoat_albedo, b.record);
       left_o = left_by_lobe(b.albedos, b.albedo, b.ks, wo.z);
       find_shares();
     }
@@ -60,15 +65,15 @@ struct Principled : ModelDefaults {
 
     CASTRAY_INLINE BsdfValue evaluate(Vec wi) const {
       const Vec h = normalize(wo + wi);
-      const Float wo_h = dot(wo, h), coat_alpha = b.layers.clearcoat_alpha;
+      const Float wo_h = dot(wo, h);
       const Lobe inner = lobe(b.alpha, h, wi), outer = lobe(coat_alpha, h, wi);
       const Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
       const Mask smooth = b.smooth();
       const Vec under = diffuse + select(smooth, black(), schlick(f0, wo_h) * inner.value);
       const Float cloth = sheen * schlick(black(), wo_h).x;
       const Vec through = fma(under, left_by_sheen(wo) * left_by_sheen(wi), Vec{cloth, cloth, cloth});
-      const Float coat = b.layers.clearcoat * schlick(coat_f0(), wo_h).x * outer.value;
-      const Vec f = fma(through, left_by_coat(wo) * left_by_coat(wi), Vec{coat, coat, coat});
+      const Float reflected = coat * schlick(coat_f0(), wo_h).x * outer.value;
+      const Vec f = fma(through, left_by_coat(wo) * left_by_coat(wi), Vec{reflected, reflected, reflected});
       const Float base_share = Float(1.f) - coat_share - lobe_share;
       const Float pdf = coat_share * outer.pdf + base_share * wi.z * Float(1.f / pi) +
                         select(smooth, Float(0.f), lobe_share * inner.pdf);
@@ -81,11 +86,13 @@ struct Principled : ModelDefaults {
       return Float(1.f) - sheen * albedo;
     }
     CASTRAY_INLINE Float left_by_coat(Vec w) const {
-      const Vec left = left_by_lobe(b.albedos, b.layers.clearcoat_albedo, coat_f0(), w.z);
-      return Float(1.f) - b.layers.clearcoat * (Float(1.f) - left.x);
+      const Vec left = left_by_lobe(b.albedos, coat_albedo, coat_f0(), w.z);
+      return Float(1.f) - coat * (Float(1.f) - left.x);
     }
 
    private:
+    CASTRAY_INLINE Float field(float KernelMaterial::*f) const { return gather(b.materials, f, b.record); }
+
     struct Lobe {
       Float value, pdf;  ///< without Fresnel's term
     };
