@@ -33,8 +33,8 @@ struct FacetList {
   ExactFacets exact;  ///< of the same facets; only for closest hits
 };
 
-/// The facets that can lie between two points of the scene, field by field, padded to a multiple of 16 with
-/// copies of the last one.
+/// The facets that can lie between two points of the scene, or before its environment, field by field, padded
+/// to a multiple of 16 with copies of the last one.
 struct BlockerList {
   const float* corner[4][3];
   const float* normal[3];

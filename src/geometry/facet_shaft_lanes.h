@@ -5,7 +5,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The blockers whose pyramids from y meet the box.
-void facet_shaft(const BlockerList& blockers, const Vec& y, const Box& box, Shaft& out);
+/// The blockers whose pyramids from the apex meet the box. For NearApex and FarApex.
+template <class Apex>
+void facet_shaft(const BlockerList& blockers, const Apex& apex, const Box& box, Shaft& out);
 
 }  // namespace castray::CASTRAY_ISA

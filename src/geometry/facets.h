@@ -11,7 +11,7 @@ namespace castray {
 /// The flat list's facets, with the storage that the kernels' views point into.
 struct Facets {
   std::vector<Facet> facets;    ///< all of the scene, sorted by axis
-  std::vector<Facet> blockers;  ///< those that can lie between two points of the scene, sorted by axis
+  std::vector<Facet> blockers;  ///< those that can lie before light, sorted by axis
   std::vector<float> blocker_fields;
 
   FacetList list() const;
@@ -20,7 +20,8 @@ struct Facets {
 };
 
 /// Merges pairs of triangles that form a convex coplanar quad of one material, and drops from the blockers
-/// every facet that has the whole scene on one side of its plane: nothing can be behind it.
+/// every facet that has the whole scene on one side of its plane: nothing can be behind it, if there is no
+/// environment.
 Facets make_facets(const Scene& scene);
 
 /// Closest hits on facets by the reference's test of their triangles, in double: watertight, and right about

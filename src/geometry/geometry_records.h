@@ -25,7 +25,7 @@ struct TriangleTable {
 /// All of a scene as one flat list of facets.
 struct FlatList {
   FacetList facets;
-  FacetList blockers;  ///< those that can lie between two points of the scene
+  FacetList blockers;  ///< those that can lie between two points of the scene, or before its environment
   BlockerList blocker_fields;
   float camera_slack;  ///< list_slack for rays from the camera
 };

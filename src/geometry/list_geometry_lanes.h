@@ -42,9 +42,11 @@ class ListGeometry {
   /// is already offset by its error to the side of `normal`; a facet's error includes that of the test.
   CASTRAY_INLINE Vec far_end(const Vec& p, const Vec& /*normal*/, const Vec& /*from*/) const { return p; }
 
-  /// The possible blockers between y and a box. False: too many.
-  CASTRAY_INLINE bool make_shaft(const Vec& y, const Box& box, ShaftBudget& /*budget*/, Shaft& out) const {
-    facet_shaft(list_.blocker_fields, y, box, out);
+  /// The possible blockers between an apex and a box. False: too many.
+  template <class Apex>
+  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& /*budget*/,
+                                 Shaft& out) const {
+    facet_shaft(list_.blocker_fields, apex, box, out);
     return true;
   }
 

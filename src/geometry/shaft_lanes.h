@@ -4,8 +4,8 @@
 #include "geometry/wide_bvh_view.h"
 #include "simd/vec_lanes.h"
 
-// Visibility between one point and all points of a box at once: what may block is in the shaft, the hull
-// of both. Most shafts are empty.
+// Visibility between one apex, a point or a direction to infinity, and all points of a box at once: what may
+// block is in the shaft, the hull of both. Most shafts are empty.
 
 namespace castray::CASTRAY_ISA {
 
@@ -15,8 +15,44 @@ struct Box {
 
 inline constexpr int max_blockers = 384;
 
-/// Possible blockers between a point y and a box, as pyramids with apex y over facets of three or four
-/// corners. Pyramid i hides y + d if d is inside its side planes, edge . d >= -margin, and behind its
+/// What a box is seen from. Corners and points are relative to `origin`; w is a unit vector.
+///
+/// From a point, which is the origin, the side planes of pyramids pass through the origin.
+struct NearApex {
+  Vec origin;
+
+  /// Positive if the plane of a facet with this corner faces away from the apex.
+  CASTRAY_INLINE Float above(const Vec& normal, const Vec& corner) const { return dot(normal, corner); }
+  /// normal . p of the points of the facet's plane, `normal` turned away from the apex.
+  CASTRAY_INLINE Float offset(const Vec& /*normal*/, const Vec& /*corner*/, Float above) const {
+    return abs(above);
+  }
+  /// From the apex to the middle of an edge whose ends have this sum; of any length.
+  CASTRAY_INLINE Vec towards(const Vec& sum) const { return sum; }
+  /// Shaft::margin of the plane with normal `edge`, which is known to within `error`, through apex and edge;
+  /// for points up to `reach` away.
+  CASTRAY_INLINE Float margin(const Vec& /*edge*/, const Vec& /*sum*/, Float error,
+                              const Vec& /*reach*/) const {
+    return error;
+  }
+};
+
+/// Seen from infinitely far away in direction w: pyramids are prisms along w.
+struct FarApex {
+  Vec w, origin;
+
+  CASTRAY_INLINE Float above(const Vec& normal, const Vec& /*corner*/) const { return -dot(normal, w); }
+  CASTRAY_INLINE Float offset(const Vec& normal, const Vec& corner, Float /*above*/) const {
+    return dot(normal, corner);
+  }
+  CASTRAY_INLINE Vec towards(const Vec& /*sum*/) const { return -w; }
+  CASTRAY_INLINE Float margin(const Vec& edge, const Vec& sum, Float error, const Vec& reach) const {
+    return fma(error, sum_abs(sum) + sum_abs(reach), dot(edge, sum) * Float(-0.5f));
+  }
+};
+
+/// Possible blockers between an apex and a box, as pyramids with that apex over facets of three or four
+/// corners. Pyramid i hides origin + d if d is inside its side planes, edge . d >= -margin, and behind its
 /// base, normal . d > base.
 struct Shaft {
   int count = 0;
@@ -38,7 +74,7 @@ struct ShaftBudget {
   }
 };
 
-/// Maximum of a . (x - y) over the box; `center` is the box's centre relative to y.
+/// Maximum of a . d over the box; `center` is the box's centre, relative to the origin as d is.
 CASTRAY_INLINE Float support(Vec a, Vec center, Vec half) {
   return dot(a, center) + fma(abs(a.x), half.x, fma(abs(a.y), half.y, abs(a.z) * half.z));
 }
@@ -53,7 +89,7 @@ CASTRAY_INLINE Mask meets_box(const Vec (&edge)[corners], const Float (&margin)[
   return meets;
 }
 
-/// Numbers of the pyramids that meet a box around y + center, to `out`; returns how many.
+/// Numbers of the pyramids that meet a box around origin + center, to `out`; returns how many.
 template <int corners>
 CASTRAY_INLINE int pyramids_of_part(const Shaft& s, const Vec& center, const Vec& half, uint32_t* out) {
   int n = 0;
@@ -75,7 +111,7 @@ CASTRAY_INLINE int pyramids_of_part(const Shaft& s, const Vec& center, const Vec
   return n;
 }
 
-/// Where pyramid i hides y + d.
+/// Where pyramid i hides origin + d.
 template <int corners>
 CASTRAY_INLINE Mask hides(const Shaft& s, uint32_t i, const Vec& d) {
   Float inside = Float(0.f);

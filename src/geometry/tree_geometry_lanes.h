@@ -32,9 +32,10 @@ class TreeGeometry {
     return fma(normal, error_of_test(max_component(magnitude(p - from)), normal), p);
   }
 
-  CASTRAY_INLINE bool make_shaft(const Vec& y, const Box& box, ShaftBudget& budget, Shaft& out) const {
-    return has_partial() ? triangle_shaft(tree_.bvh, there_, y, box, budget, out)
-                         : triangle_shaft(tree_.bvh, y, box, budget, out);
+  template <class Apex>
+  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& budget, Shaft& out) const {
+    return has_partial() ? triangle_shaft(tree_.bvh, there_, apex, box, budget, out)
+                         : triangle_shaft(tree_.bvh, AllThere{}, apex, box, budget, out);
   }
 
  private:

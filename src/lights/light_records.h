@@ -51,6 +51,7 @@ struct LightList {
   const LightBounds* cut;   ///< nodes of the tree that together hold every light once
   const LightBounds* tree;  ///< pairs of siblings
   float environment[3];     ///< radiance from every direction that hits nothing
+  bool has_environment;     ///< it is not black
   bool by_solid_angle;      ///< sample rectangles uniformly in solid angle
   bool may_be_covered;  ///< a surface may lie so close in front of a light that segments must start at the
                         ///< light

@@ -7,11 +7,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-template <int N>
-CASTRAY_INLINE Vec broadcast_entry(const VecArray<N>& a, int i) {
-  return {Float(a.x[i]), Float(a.y[i]), Float(a.z[i])};
-}
-
 /// The BSDF of a glossy suffix, the same in all lanes, and its shading frame.
 struct GlossySuffix {
   Bsdf bsdf;
@@ -55,37 +50,30 @@ CASTRAY_INLINE void add_glossy(const KernelScene& scene, const Suffixes& suffixe
   }
 }
 
-/// Every pixel of a tile gathers from every suffix of the tile. What an escaped suffix found goes to its
-/// own pixel only.
+/// Every pixel of a tile gathers from every suffix of the tile that landed.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxes* boxes,
                                    const Suffixes& suffixes, const Radiance& radiance, VisibilityScratch& s,
                                    Gathered& gathered) {
-  const float stratum = stratum_of(c.options);
   for (int tile = 0; tile < c.job.tiles; ++tile) {
+    const float stratum = stratum_of(c, suffixes.origins[tile]);
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     for (int j = 0; j < c.options.suffixes; ++j) {
       const int suffix = tile * tile_pixels + j, slot = batch_size + suffix,
                 origin = (int)suffixes.origin[suffix];
+      if (!suffixes.landed[suffix]) continue;
       const Vec reflected = radiance.at(slot);
-      if (!suffixes.landed[suffix]) {
-        if (none(max_component(reflected) > Float(0.f))) continue;
-        const bool weighted = features & feature_materials;
-        gathered.sum.x[origin] += radiance.x[slot] * (weighted ? suffixes.weight.x[suffix] : stratum);
-        gathered.sum.y[origin] += radiance.y[slot] * (weighted ? suffixes.weight.y[suffix] : stratum);
-        gathered.sum.z[origin] += radiance.z[slot] * (weighted ? suffixes.weight.z[suffix] : stratum);
-        continue;
-      }
       const int entry = (int)suffixes.landed[suffix] - 1;
       const bool glossy = (features & feature_materials) && suffixes.glossy[entry];
       const Vec emitted = broadcast_entry(suffixes.emission, entry);
       const Vec lit = glossy ? radiance.at(slot + batch_size) : black();
       if (all(max_component(reflected + emitted + lit) <= Float(0.f))) continue;
       Transfer t;
-      transfer<Geometry, features>(c,
-                                   {broadcast_entry(suffixes.y.p, entry),
-                                    broadcast_entry(suffixes.y.normal, entry), origin - gatherers.first},
-                                   gatherers, s, t);
+      transfer<Geometry, features>(
+          c,
+          Sender{broadcast_entry(suffixes.y.p, entry), broadcast_entry(suffixes.y.normal, entry),
+                 origin - gatherers.first},
+          gatherers, s, t);
       const float density = ordered_sum(t.density) / stratum;
       if (!(density > 0)) continue;
       const Vec emission =

@@ -18,6 +18,12 @@ struct TileBoxes {
   Box all, part[tile_parts];
 };
 
+/// Where the suffixes of a tile may start.
+struct Origins {
+  uint32_t count;               ///< at least 1
+  uint32_t entry[tile_pixels];  ///< of the camera's vertices
+};
+
 /// The points of one tile: entries first to first + 63 of the camera's vertices.
 struct Gatherers {
   const Vertices& x;
@@ -40,6 +46,10 @@ CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
     for (int i = 0; i < half; ++i) sum[i] += sum[i + half];
   return sum[0];
 }
+
+/// The points of the tile from `first` on as origins: as they come; or, `by_normal`, only those on a surface,
+/// and those of like orientation side by side.
+void find_origins(const Vertices& x, int first, bool by_normal, Origins& origins);
 
 /// Bounds of a tile's points; with `in_parts` also those of its parts.
 void bound_tile(const Vertices& x, int first, bool in_parts, TileBoxes& boxes);

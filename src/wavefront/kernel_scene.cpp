@@ -75,6 +75,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   }
   view.lights.by_solid_angle = plan.lights_by_solid_angle;
   put(view.lights.environment, scene.environment);
+  view.lights.has_environment = max_component(scene.environment) > 0;
   const std::vector<Vec3d> emission = mean_emissions(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     materials.materials[i].light_density = lights.density(scene.materials[i], emission[i]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "wavefront/gather_environment_lanes.h"
 #include "wavefront/gather_suffixes_lanes.h"
 #include "wavefront/light_lanes.h"
 

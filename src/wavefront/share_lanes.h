@@ -44,12 +44,16 @@ CASTRAY_STAGE void share(Context& c, Scratch& s) {
     split_unshareable(c.scene, s.camera, s.vertices);
     if (s.vertices.count > 0) follow<Geometry, features>(c, s, s.vertices, 0, first_roulette_vertex);
   }
-  for (int tile = 0; tile < c.job.tiles; ++tile)
+  for (int tile = 0; tile < c.job.tiles; ++tile) {
     bound_tile(s.camera, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
-  gather_light<Geometry, features>(c, s.camera, s.boxes, s.visibility, s.gathered);
-  add_gathered_to_direct<features>(c, s);
+    find_origins(s.camera, tile * tile_pixels, c.scene.lights.has_environment, s.suffixes.origins[tile]);
+  }
+  gather_light<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.visibility, s.gathered);
   start_suffixes<features>(c, s.camera, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);
+  gather_environment<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.paths, s.hits, s.visibility,
+                                         s.gathered);
+  add_gathered_to_direct<features>(c, s);
   surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.suffixes.y, s.radiance);
   keep_suffix_ends(c, features & feature_detail, s.suffixes);
   if constexpr (features & feature_materials) {

@@ -11,27 +11,35 @@ CASTRAY_INLINE Vec gather_entries(const VecArray<N>& a, Uint i) {
   return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
 }
 
-/// Starts the suffixes: one BSDF sample at a random camera vertex of each stratum.
+/// Sequence indices of the suffixes of a tile. Under an environment runs of 2^k suffixes have runs of
+/// indices, so that what points of one orientation send out is stratified.
+CASTRAY_INLINE Uint suffix_index(const Context& c, uint32_t key, Uint item, uint32_t per_tile) {
+  if (!c.scene.lights.has_environment) return tile_index(key, c.job.sample, item, per_tile);
+  const uint32_t order = hash_once(key, (uint32_t)c.job.sample) & (per_tile - 1);
+  return (item ^ Uint(order)) + Uint(((uint32_t)c.job.sample * per_tile) & ((1u << index_bits) - 1));
+}
+
+/// Starts the suffixes: one BSDF sample at a random point of each stratum of a tile's origins.
 template <uint32_t features>
 CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes& suffixes, Paths& out) {
   const auto per_tile = (uint32_t)c.options.suffixes;
-  const uint32_t stratum = tile_pixels / per_tile;
-  const int shift = __builtin_ctz(stratum);
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   out.count = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     const uint32_t key = tile_key(c, tile), choice_key = hash_once(key, (uint32_t)c.job.sample);
+    const Origins& origins = suffixes.origins[tile];
     for (uint32_t j = 0; j < per_tile; j += width) {
       const Uint item = Uint(j) + lane_index(), suffix = Uint((uint32_t)(tile * tile_pixels)) + item;
-      const Uint in_stratum = hash_combine(Uint(choice_key), item + 0x51u) & (stratum - 1);
+      const Uint in_stratum = ((hash_combine(Uint(choice_key), item + 0x51u) >> 16) * origins.count) >> 16;
+      const Uint rank = (item * origins.count + in_stratum) >> __builtin_ctz(per_tile);
       const Mask there = item < Uint(per_tile);
-      const Uint entry =
-          Uint((uint32_t)(tile * tile_pixels)) + select(there, (item << shift) + in_stratum, Uint(0u));
-      const Uint index = tile_index(key, c.job.sample, item, per_tile);
+      const Uint entry = gather(origins.entry, select(there, rank, Uint(0u)));
+      const Uint index = suffix_index(c, key, item, per_tile);
       const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, PathBlocks::direction(0));
       const Vec normal = gather_entries(x.normal, entry);
       const Parameters<features> parameters = gather_entries<features>(x.parameters, entry);
       Vec wi, weight = parameters.kd();
+      Mask going = there & (length_squared(normal) > Float(0.f));
       if constexpr (features & feature_materials) {
         const Frame frame = make_frame(gather_entries(x.shading_normal, entry));
         const Shading shading{gather_bsdf(c.scene, gather(x.material, entry), parameters), frame,
@@ -40,15 +48,14 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
         const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
         wi = to_world(frame, s.wi);
         weight = select(shading.consistent(wi, s.wi), s.weight, black());
+        going = going & shading.consistent(wi, s.wi) & ~(s.pdf <= Float(0.f));
       } else {
         wi = to_world(make_frame(normal), cosine_hemisphere(n.u[0], n.u[1]));
       }
-      const Mask going =
-          there & (length_squared(normal) > Float(0.f)) & ~(max_component(weight) <= Float(0.f));
       const int first = tile * tile_pixels + (int)j, k = out.count;
       store(suffixes.origin + first, entry);
       store(suffixes.landed + first, Uint(0u));
-      store(suffixes.weight, first, weight * Float((float)stratum));
+      store(suffixes.weight, first, weight * Float(stratum_of(c, origins)));
       compress_store(out.o, k, going, gather_entries(x.p, entry));
       compress_store(out.d, k, going, wi);
       compress_store(out.throughput, k, going, one);

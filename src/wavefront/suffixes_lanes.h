@@ -1,11 +1,13 @@
 #pragma once
 
 #include "wavefront/context_lanes.h"
+#include "wavefront/gatherers_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
 /// The suffixes of a job: suffix j of tile t is number 64 t + j, and has slot batch_size + its number.
 struct Suffixes {
+  Origins origins[max_tiles];               ///< by tile
   alignas(64) uint32_t origin[batch_size];  ///< entry of the camera vertex x_k where it started
   alignas(64) uint32_t landed[batch_size];  ///< 1 + its entry in y; 0: it escaped, or was not traced
   VecArray<batch_size> weight;              ///< f cos / pdf at x_k, times the stratum
@@ -18,6 +20,11 @@ struct Suffixes {
   // By number, of those with glossy y; unit directions:
   VecArray<batch_size> to_light, onward;  ///< to y's light point, and of the next segment
 };
+
+/// Points per suffix: 1 over the expected number of suffixes that start at one.
+CASTRAY_INLINE float stratum_of(const Context& c, const Origins& origins) {
+  return (float)origins.count / (float)c.options.suffixes;
+}
 
 /// Stores the lanes of v, of vertices i to i + width - 1, by the numbers of their suffixes.
 CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y, int i, const Vec& v) {

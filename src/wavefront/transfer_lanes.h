@@ -4,7 +4,8 @@
 #include "wavefront/gatherers_lanes.h"
 #include "wavefront/shading_lanes.h"
 
-// How much light each pixel of a tile gets from a sender: a light point or the end of a suffix.
+// How much light each pixel of a tile gets from a sender: a light point, the end of a suffix, or a direction
+// from which light arrives from outside the scene.
 
 namespace castray::CASTRAY_ISA {
 
@@ -14,13 +15,42 @@ struct Sender {
   int own;
 };
 
+/// A sender at infinity, in direction w.
+struct FarSender {
+  Vec w;
+  int own;
+};
+
 /// For each pixel: `weight`, f cos cos' V / |x - y|^2; and `density`, the pdf, per area at y, with which
-/// BSDF sampling at x finds y. With diffuse materials only, `weight` is not stored: it is density times
-/// albedo.
+/// BSDF sampling at x finds y. For a far sender f cos V and the pdf of the direction. With diffuse materials
+/// only, `weight` is not stored: it is density times albedo.
 struct Transfer {
   Float density[tile_vectors];
   Vec weight[tile_vectors];
 };
+
+/// Which of the points i to i + width - 1 of a tile reflect by other models than Lambert's, so that a
+/// transfer by cosines needs to be replaced. `normal`: theirs.
+template <uint32_t features>
+CASTRAY_INLINE Mask by_bsdf(const Context& c, const Gatherers& tile, int entry, const Vec& normal) {
+  if constexpr (features & feature_detail) return Mask(true);
+  return has_traits(c.scene, record_of(load(tile.x.material + entry)), trait_directional) &
+         (length_squared(normal) > Float(0.f));
+}
+
+/// Replaces vector i of a transfer, in `lanes`, by what the BSDF says about direction wi. `geometry` turns
+/// densities of directions into those of the sender.
+template <uint32_t features>
+CASTRAY_INLINE void transfer_by_bsdf(const Context& c, const Gatherers& tile, int i, Mask lanes,
+                                     const Vec& wi, Float geometry, Transfer& t) {
+  const int entry = tile.first + i * width;
+  const Shading shading = shading_of<features>(c.scene, tile.x, entry);
+  const Vec local = to_local(shading.frame, wi);
+  const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
+  const Mask valid = shading.consistent(wi, local) & (length_squared(shading.normal) > Float(0.f));
+  t.density[i] = select(lanes, select(valid, value.pdf * geometry, Float(0.f)), t.density[i]);
+  t.weight[i] = select(lanes, select(valid, value.f_cos * geometry, black()), t.weight[i]);
+}
 
 /// Transfer without visibility.
 template <uint32_t features>
@@ -34,21 +64,25 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
     t.density[i] = cos_x * cos_y / (distance2 * distance2) * Float(1.f / pi);
     if constexpr (features & feature_materials) {
       t.weight[i] = load_kd(tile.x.parameters, entry) * t.density[i];
-      const Mask directional =
-          has_traits(c.scene, record_of(load(tile.x.material + entry)), trait_directional) &
-          (length_squared(normal) > Float(0.f));
-      bool other = any(directional);
-      if constexpr (features & feature_detail) other = true;
-      if (!other) continue;
-      const Shading shading = shading_of<features>(c.scene, tile.x, entry);
+      const Mask lanes = by_bsdf<features>(c, tile, entry, normal);
+      if (none(lanes)) continue;
       const Float inverse = Float(1.f) / sqrt(distance2);
-      const Vec wi = d * -inverse, local = to_local(shading.frame, wi);
-      const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
-      const Float geometry = cos_y * inverse * inverse * inverse;
-      const Mask valid = shading.consistent(wi, local) & (length_squared(normal) > Float(0.f));
-      const Mask lanes = (features & feature_detail) ? Mask(true) : directional;
-      t.density[i] = select(lanes, select(valid, value.pdf * geometry, Float(0.f)), t.density[i]);
-      t.weight[i] = select(lanes, select(valid, value.f_cos * geometry, black()), t.weight[i]);
+      transfer_by_bsdf<features>(c, tile, i, lanes, d * -inverse, cos_y * inverse * inverse * inverse, t);
+    }
+  }
+}
+
+template <uint32_t features>
+CASTRAY_INLINE void unoccluded_transfer(const Context& c, const FarSender& y, const Gatherers& tile,
+                                        Transfer& t) {
+  for (int i = 0; i < tile_vectors; ++i) {
+    const int entry = tile.first + i * width;
+    const Vec normal = load(tile.x.normal, entry);
+    t.density[i] = max(dot(normal, y.w), Float(0.f)) * Float(1.f / pi);
+    if constexpr (features & feature_materials) {
+      t.weight[i] = load_kd(tile.x.parameters, entry) * t.density[i];
+      const Mask lanes = by_bsdf<features>(c, tile, entry, normal);
+      if (any(lanes)) transfer_by_bsdf<features>(c, tile, i, lanes, y.w, Float(1.f), t);
     }
   }
 }

@@ -18,19 +18,33 @@ CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
   if (weights) t.weight[i] = select(hidden, black(), t.weight[i]);
 }
 
-/// Visibility by one shadow ray a pixel.
+CASTRAY_INLINE NearApex apex_of(const Sender& y, const Box& /*tile*/) { return {y.p}; }
+CASTRAY_INLINE FarApex apex_of(const FarSender& y, const Box& tile) { return {y.w, broadcast(tile.center)}; }
+
+/// The segment to trace between a sender and a point p of a tile.
 template <class Geometry>
-CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& tile, VisibilityScratch& s,
+CASTRAY_INLINE Segment segment_of(const Geometry& geometry, const Sender& y, const Vec& p,
+                                  const Vec& normal) {
+  return {y.p, geometry.far_end(p, normal, y.p) - y.p};
+}
+template <class Geometry>
+CASTRAY_INLINE Segment segment_of(const Geometry&, const FarSender& y, const Vec& p, const Vec& /*normal*/) {
+  return {p, y.w * Float(beyond_scene)};
+}
+
+/// Visibility by one shadow ray a pixel.
+template <class Geometry, class AnySender>
+CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers& tile, VisibilityScratch& s,
                                  bool weights, Transfer& t) {
   const Geometry geometry = geometry_of<Geometry>(c);
   int n = 0;
   for (int i = 0; i < tile_vectors; ++i) {
     const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
     const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
-    compress_store(s.o, n, open, y.p);
     const int entry = tile.first + i * width;
-    compress_store(s.d, n, open,
-                   geometry.far_end(load(tile.x.p, entry), load(tile.x.normal, entry), y.p) - y.p);
+    const Segment traced = segment_of(geometry, y, load(tile.x.p, entry), load(tile.x.normal, entry));
+    compress_store(s.o, n, open, traced.o);
+    compress_store(s.d, n, open, traced.d);
     compress_store(s.pixel + n, open, pixel);
     n += count(open);
   }
@@ -45,12 +59,13 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const Sender& y, const Gatherers& t
 inline constexpr int few_pyramids = 16;
 
 /// Visibility by the pyramids of a shaft, or by rays where the shaft holds too much.
-template <class Geometry, uint32_t features>
-CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, VisibilityScratch& s,
+template <class Geometry, uint32_t features, class AnySender>
+CASTRAY_INLINE void hide_blocked(Context& c, const AnySender& y, Gatherers& tile, VisibilityScratch& s,
                                  Transfer& t) {
   constexpr bool weights = features & feature_materials;
   constexpr int corners = Geometry::blocker_corners;
-  if (!geometry_of<Geometry>(c).make_shaft(y.p, tile.boxes.all, tile.budget, s.shaft))
+  const auto apex = apex_of(y, tile.boxes.all);
+  if (!geometry_of<Geometry>(c).make_shaft(apex, tile.boxes.all, tile.budget, s.shaft))
     return hide_by_rays<Geometry>(c, y, tile, s, weights, t);
   if (s.shaft.count == 0) return;
   const bool choose = Geometry::has_many_blockers && s.shaft.count > few_pyramids;
@@ -58,12 +73,12 @@ CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, V
   for (int i = 0; i < tile_vectors; ++i) {
     if (choose && i % part_vectors == 0) {
       const Box& part = tile.boxes.part[i / part_vectors];
-      pyramids =
-          pyramids_of_part<corners>(s.shaft, broadcast(part.center) - y.p, broadcast(part.half), s.pyramids);
+      pyramids = pyramids_of_part<corners>(s.shaft, broadcast(part.center) - apex.origin,
+                                           broadcast(part.half), s.pyramids);
     }
     const Mask open = t.density[i] > Float(0.f);
     if (none(open)) continue;
-    const Vec d = load(tile.x.p, tile.first + i * width) - y.p;
+    const Vec d = load(tile.x.p, tile.first + i * width) - apex.origin;
     Mask hidden(false);
     for (int b = 0; b < pyramids; ++b) {
       hidden = hidden | hides<corners>(s.shaft, choose ? s.pyramids[b] : (uint32_t)b, d);
@@ -74,8 +89,9 @@ CASTRAY_INLINE void hide_blocked(Context& c, const Sender& y, Gatherers& tile, V
   }
 }
 
-template <class Geometry, uint32_t features>
-CASTRAY_STAGE void transfer(Context& c, const Sender& y, Gatherers& tile, VisibilityScratch& s, Transfer& t) {
+template <class Geometry, uint32_t features, class AnySender>
+CASTRAY_STAGE void transfer(Context& c, const AnySender& y, Gatherers& tile, VisibilityScratch& s,
+                            Transfer& t) {
   unoccluded_transfer<features>(c, y, tile, t);
   hide_blocked<Geometry, features>(c, y, tile, s, t);
   c.rays += tile_pixels;

@@ -1,14 +1,16 @@
 #include <catch2/catch.hpp>
 
 #include <array>
+#include <functional>
 
+#include "integrators.h"
 #include "reference_images.h"
 #include "test_scenes.h"
 
 using namespace castray;
 using namespace castray::test;
 
-// castRay against values that are known exactly.
+// Renders against values that are known exactly.
 
 namespace {
 
@@ -32,6 +34,19 @@ double lambert_irradiance(const Vec3d& p, const Vec3d& n, const std::array<Vec3d
     sum += std::acos(dot(a, b)) * dot(n, normalize(cross(a, b)));
   }
   return std::abs(sum) / 2;
+}
+
+/// The floor y = 0, |x|, |z| < 1, which fills the view, by its radiance at the pixels' centres.
+Image floor_image(const Camera& camera, int size, const std::function<double(const Vec3d&)>& radiance) {
+  Image image(size, size);
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const Vec3d direction = camera.direction(x + 0.5, y + 0.5, size, size);
+      const Vec3d p = camera.position + direction * (-camera.position.y / direction.y);
+      REQUIRE(std::max(std::abs(p.x), std::abs(p.z)) < 1);
+      image.at(x, y) = Vec3f(static_cast<float>(radiance(p)));
+    }
+  return image;
 }
 
 }  // namespace
@@ -64,16 +79,9 @@ TEST_CASE("direct light of a rectangle is Lambert's polygon formula", "[statisti
   sketch.add_quad(Vec3f(light[0]), Vec3f(light[1]), Vec3f(light[2]), Vec3f(light[3]), lamp);
   sketch.scene.camera = make_camera({0, 0.6, 1.2}, {0, 0, 0}, {0, 1, 0}, 20);
 
-  Image expected(size, size);
-  for (int y = 0; y < size; ++y)
-    for (int x = 0; x < size; ++x) {
-      const Camera& camera = sketch.scene.camera;
-      const Vec3d direction = camera.direction(x + 0.5, y + 0.5, size, size);
-      const Vec3d p = camera.position + direction * (-camera.position.y / direction.y);
-      REQUIRE(std::max(std::abs(p.x), std::abs(p.z)) < 1);
-      const double irradiance = radiance * lambert_irradiance(p, {0, 1, 0}, light);
-      expected.at(x, y) = Vec3f(static_cast<float>(kd / 3.141592653589793 * irradiance));
-    }
+  const Image expected = floor_image(sketch.scene.camera, size, [&](const Vec3d& p) {
+    return kd / 3.141592653589793 * radiance * lambert_irradiance(p, {0, 1, 0}, light);
+  });
   RenderOptions options = reference_options(size, size, 128);
   options.max_depth = 2;
   options.jitter = false;
@@ -83,6 +91,34 @@ TEST_CASE("direct light of a rectangle is Lambert's polygon formula", "[statisti
     CAPTURE(scores.largest, scores.rms);
     CHECK(scores.largest < score_limit(scores.count / 3, 1e-3));  // the three channels are one
     CHECK(scores.rms < 1.25);  // 144 scores: 1 has a standard error of 0.06
+  }
+}
+
+// The roof is the scene's highest plane, the floor its lowest: what no segment between two points of the
+// scene crosses still hides the sky. 18 ways of 144 pixels; the three channels are one.
+TEST_CASE("a black roof takes from the sky what Lambert's polygon formula says", "[statistical]") {
+  const std::array<Vec3d, 4> roof = {Vec3d{-0.6, 0.5, -0.4}, Vec3d{0.3, 0.5, -0.4}, Vec3d{0.3, 0.5, 0.5},
+                                     Vec3d{-0.6, 0.5, 0.5}};
+  constexpr double kd = 0.6, sky = 2;
+  constexpr int size = 12;
+  SceneSketch sketch;
+  const auto floor = sketch.add_material({.name = "floor", .kd = Vec3d(kd)});
+  const auto black = sketch.add_material({.name = "black", .kd = Vec3d(0)});
+  sketch.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, floor);
+  sketch.add_quad(Vec3f(roof[0]), Vec3f(roof[1]), Vec3f(roof[2]), Vec3f(roof[3]), black);
+  sketch.scene.environment = Vec3d(sky);
+  sketch.scene.camera = make_camera({0, 0.45, 1.2}, {0, 0, 0}, {0, 1, 0}, 12);
+  const Image expected = floor_image(sketch.scene.camera, size, [&](const Vec3d& p) {
+    return kd * sky * (1 - lambert_irradiance(p, {0, 1, 0}, roof) / 3.141592653589793);
+  });
+  for (const Way& way : every_way(wavefront_options(size, 32, 1))) {
+    RenderOptions options = way.options;
+    options.jitter = false;
+    const BlockScores scores = pixel_scores(sketch.scene, options, expected, 16);
+    CAPTURE(way.name, scores.largest, scores.rms);
+    CHECK(scores.count == 3 * size * size);
+    CHECK(scores.largest < score_limit(scores.count / 3, 1e-4));
+    CHECK(scores.rms < 1.3);  // neighbours that share paths are not independent
   }
 }
 

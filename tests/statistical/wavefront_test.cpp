@@ -67,6 +67,7 @@ TEST_CASE("the wavefront agrees with castRay on every material", "[statistical]"
   check_scene("narrow", box_with([](Material& m) { m.alpha = 0.05; }));
   check_scene("glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0; }));
   check_scene("rough glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; }));
+  check_scene("black", box_with([](Material& m) { m.type = MaterialType::diffuse, m.kd = Vec3d(0); }));
   check_scene("varnish", box_with([](Material& m) {
                 m.type = MaterialType::microfacet, m.alpha = 0, m.kd = {.6, .3, .1}, m.ks = {.05, .05, .05};
               }));

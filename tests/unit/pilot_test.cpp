@@ -80,7 +80,8 @@ TEST_CASE("the pilot does not depend on threads or seed, and small or dark image
   CHECK_FALSE(gain_of_sharing(sharing(), 200, 136, 1, pretended(0, 0, 0, 1000, 1000)));
 }
 
-TEST_CASE("outdoors paths are plain by default, in the box they are shared, whatever part is rendered") {
+TEST_CASE(
+    "between mirrors paths are plain by default, in the box they are shared, whatever part is rendered") {
   RenderOptions options;
   options.width = options.height = 64;
   options.spp = 2;
@@ -90,19 +91,19 @@ TEST_CASE("outdoors paths are plain by default, in the box they are shared, what
   RenderOptions plain = options, shared = options;
   plain.reuse = {.automatic = false};
   shared.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 64};
-  const Scene sky = standard_scene("kinds/sky_and_ground"), box = standard_scene("cornell_box");
-  CHECK(pixels(sky, options) == pixels(sky, plain));
+  const Scene mirrors = standard_scene("kinds/facing_mirrors"), box = standard_scene("cornell_box");
+  CHECK(pixels(mirrors, options) == pixels(mirrors, plain));
   CHECK(pixels(box, options) == pixels(box, shared));
-  const RenderResult outdoors = render(sky, options);
-  CHECK_THAT(outdoors.film.key, Catch::EndsWith("sharing=off"));
+  const RenderResult alone = render(mirrors, options);
+  CHECK_THAT(alone.film.key, Catch::EndsWith("sharing=off"));
   CHECK_THAT(render(box, options).film.key, Catch::EndsWith("sharing=on"));
-  CHECK(outdoors.stats.pilot_seconds > 0);
-  CHECK(outdoors.stats.render_seconds > outdoors.stats.pilot_seconds);
-  CHECK(render(sky, plain).stats.pilot_seconds == 0);
+  CHECK(alone.stats.pilot_seconds > 0);
+  CHECK(alone.stats.render_seconds > alone.stats.pilot_seconds);
+  CHECK(render(mirrors, plain).stats.pilot_seconds == 0);
   for (RenderOptions* o : {&options, &plain}) {
     o->crop = Window{.x0 = 20, .y0 = 30, .x1 = 33, .y1 = 41};
     o->samples = SampleRange{5, 1};
     o->threads = 3;
   }
-  CHECK(pixels(sky, options) == pixels(sky, plain));
+  CHECK(pixels(mirrors, options) == pixels(mirrors, plain));
 }

@@ -1,0 +1,141 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <functional>
+
+#include "castray_blocks.h"
+#include "generate/shapes.h"
+#include "integrators.h"
+#include "test_scenes.h"
+
+using namespace castray;
+using namespace castray::test;
+
+// Light from outside the scene: against values that are known exactly, and the wavefront, in all its forms,
+// against castRay in double precision.
+
+namespace {
+
+Scene on_boxes(const std::function<void(Material&)>& change) {
+  Scene scene = standard_scene("kinds/sky_and_ground");
+  for (std::size_t m = 1; m < scene.materials.size(); ++m) change(scene.materials[m]);
+  return scene;
+}
+
+/// A rough ball of 20 times frequency^2 triangles on a floor, under a blue sky and a lamp.
+Scene ball_outdoors(std::uint32_t frequency, const Material& material) {
+  SceneSketch sketch;
+  const auto floor = sketch.add_material({.name = "floor", .kd = {.5, .4, .3}});
+  const auto lamp = sketch.add_material({.name = "lamp", .kd = Vec3d(0.5), .ke = Vec3d(20)});
+  const auto ball = sketch.add_material(material);
+  sketch.add_quad({-1, -.4f, 1}, {1, -.4f, 1}, {1, -.4f, -1}, {-1, -.4f, -1}, floor);
+  sketch.add_quad({.7f, .9f, -.1f}, {.9f, .9f, -.1f}, {.9f, .9f, .1f}, {.7f, .9f, .1f}, lamp);
+  const Shape shape = blob(frequency, 1);
+  sketch.add_mesh(shape.positions, shape.triangles, 0.4, {}, false, ball);
+  sketch.scene.environment = {.3, .5, .9};
+  sketch.scene.camera = make_camera({0.4, 0.5, 1.8}, {0, -0.1, 0}, {0, 1, 0}, 35);
+  return sketch.scene;
+}
+
+}  // namespace
+
+TEST_CASE("a plane under a constant sky reflects its albedo of it, without noise") {
+  const Vec3d albedo{0.2, 0.5, 0.9}, sky{3, 1, 0.5};
+  SceneSketch sketch;
+  const auto ground = sketch.add_material({.name = "ground", .kd = albedo});
+  sketch.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, ground);
+  sketch.scene.environment = sky;
+  sketch.scene.camera = make_camera({0, 1, 2}, {0, 0, 0}, {0, 1, 0}, 40);
+  for (const Way& way : every_way(wavefront_options(24, 3, 5))) {
+    const Image image = render(sketch.scene, way.options).film.image();
+    for (const Vec3f& pixel : image.pixels)
+      for (int c = 0; c < 3; ++c) {
+        CAPTURE(way.name, c);
+        REQUIRE(pixel[c] == Approx(albedo[c] * sky[c]).epsilon(1e-5));
+      }
+  }
+}
+
+// 24 seeds of 3 channels and 18 ways: one false alarm in 290.
+TEST_CASE("white boxes in a white sky cannot be told from it", "[statistical]") {
+  Scene scene = on_boxes([](Material&) {});
+  for (Material& m : scene.materials) m.kd = Vec3d(1);
+  for (const Way& way : every_way(wavefront_options(16, 8, 1))) {
+    Mean mean[3];
+    RenderOptions options = way.options;
+    for (options.seed = 1; options.seed <= 24; ++options.seed) {
+      Vec3d sum;
+      for (const Vec3f& p : render(scene, options).film.image().pixels) sum += Vec3d(p);
+      for (int c = 0; c < 3; ++c) mean[c].add(sum[c] / 256);
+    }
+    for (int c = 0; c < 3; ++c) {
+      CAPTURE(way.name, c, mean[c].mean(), mean[c].error());
+      CHECK(std::abs(mean[c].mean() - 1) < 5 * mean[c].error() + 1e-6);
+      CHECK(mean[c].error() < 0.01);
+    }
+  }
+}
+
+TEST_CASE("outdoors the wavefront agrees with castRay", "[statistical]") {
+  for (const char* name : {"kinds/sky_and_ground", "kinds/sun_and_sky", "kinds/window_room"})
+    check_scene(name, standard_scene(name));
+}
+
+TEST_CASE("every form of the wavefront has the same mean outdoors", "[statistical]") {
+  const Scene scene = standard_scene("kinds/sky_and_ground");
+  const Expected expected(scene);
+  const auto check = [&](const std::string& what, const std::function<void(RenderOptions&)>& change) {
+    RenderOptions options = wavefront_options(4);
+    change(options);
+    expected.check(what, scene, options);
+  };
+  for (const std::string& isa : instruction_sets())
+    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
+      check(isa + (accel == AccelKind::list ? ", list" : ", tree"), [&](RenderOptions& o) {
+        o.isa = isa;
+        o.accel = accel;
+      });
+  check("generic list", [](RenderOptions& o) { o.generic = true; });
+  check("generic tree", [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
+  check("MIS", [](RenderOptions& o) { o.mis = Switch::on; });
+  check("independent numbers", [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
+  check("fixed roulette", [](RenderOptions& o) { o.rr = 0.7; });
+  for (const int suffixes : {1, 4, 16, 64})
+    check(std::to_string(suffixes) + " suffixes", [&](RenderOptions& o) {
+      o.reuse = {false, 8, 8, suffixes};
+    });
+}
+
+TEST_CASE("outdoors the wavefront agrees with castRay on every material", "[statistical]") {
+  const auto boxes = [](const std::string& name, const std::function<void(Material&)>& change) {
+    check_scene(name, on_boxes(change));
+  };
+  boxes("metal", [](Material& m) { m.type = MaterialType::conductor, m.alpha = 0.3; });
+  boxes("narrow", [](Material& m) { m.type = MaterialType::conductor, m.alpha = 0.05; });
+  boxes("mirror", [](Material& m) { m.type = MaterialType::conductor, m.alpha = 0; });
+  boxes("satin", [](Material& m) { m.type = MaterialType::microfacet, m.alpha = 0.2, m.ks = Vec3d(0.4); });
+  boxes("half there", [](Material& m) { m.coverage = 0.5; });
+  boxes("black", [](Material& m) { m.kd = Vec3d(0); });
+}
+
+TEST_CASE("outdoors the wavefront agrees with castRay on meshes", "[statistical]") {
+  check_scene("rough glass",
+              ball_outdoors(3, {.name = "glass", .type = MaterialType::dielectric, .alpha = 0.4}));
+  for (const std::uint32_t frequency : {3u, 24u}) {
+    const std::string triangles = std::to_string(20 * frequency * frequency) + " triangles";
+    check_scene(triangles, ball_outdoors(frequency, {.name = "white", .kd = Vec3d(0.8)}));
+    Material metal{.name = "metal", .type = MaterialType::conductor, .alpha = 0.3};
+    check_scene(triangles + " of metal", ball_outdoors(frequency, metal));
+  }
+}
+
+TEST_CASE("a limited depth means the same outdoors", "[statistical]") {
+  const Scene scene = standard_scene("kinds/sun_and_sky");
+  for (const int depth : {2, 3}) {
+    RenderOptions options = wavefront_options(4);
+    options.max_depth = depth;
+    const Expected expected(scene, options);
+    expected.check("depth " + std::to_string(depth), scene, options);
+    expected.check("depth " + std::to_string(depth) + ", plain", scene, plain(options));
+  }
+}
