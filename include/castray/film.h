@@ -78,13 +78,20 @@ class Film {
   std::vector<Vec3d> replicate_means(const Blocks& blocks) const;
 
   /// Adds the samples of `other`. Throws InputError that names what differs, and changes nothing, if the two
-  /// are not parts of one render (window, scale, `key`, whether replicates are kept) or if their sample
-  /// ranges overlap.
+  /// are not parts of one render or if their sample ranges overlap.
   void merge(const Film& other);
+
+  /// Throws InputError that names what differs if the two are not parts of one render: `key`, `version`,
+  /// window, scale, whether replicates are kept.
+  void require_same_render(const Film& other) const;
+
+  /// Samples taken, on average over the pixels, those that were not finite included.
+  double samples_per_pixel() const;
 
   /// All that the samples depend on besides their index (scene, seed, options), as "name=value" items
   /// separated by "; "; in a value '%', ';', '=' and control characters are written as "%XX".
   std::string key;
+  std::string version;               ///< of the castray that rendered it
   std::vector<SampleRange> samples;  ///< rendered so far, ascending, disjoint, not adjacent
   std::uint64_t nonfinite_samples = 0;
 
@@ -119,12 +126,12 @@ class Film {
 /// have.
 std::optional<Noise> noise_of(const Film& film);
 
-/// In what two film keys differ: "seed=0 against seed=4".
-std::string difference_of_keys(const std::string& a, const std::string& b);
-
 /// What a film says of itself, as PNG and EXR files hold it: scene and its hash, seed, spp, and options as
 /// flags of the command line.
 Metadata describe(const Film& film);
+
+/// A number of samples per pixel for people: whole, or with one decimal.
+std::string samples_text(double samples_per_pixel);
 
 /// Reads a .film file. Throws InputError if it is not one, is truncated or corrupt.
 Film read_film(const std::filesystem::path& file);
@@ -133,5 +140,10 @@ Film read_film(const std::filesystem::path& file);
 /// depend only on the samples and `key`, not on the order in which they were added and merged.
 void write_film(const std::filesystem::path& file, const Film& film, const Display& display = {},
                 const Metadata& metadata = {});
+
+/// Writes a .film file; the one that was there is kept as `previous_checkpoint(file)`.
+void write_checkpoint(const std::filesystem::path& file, const Film& film);
+/// "a/x.previous.film" of "a/x.film".
+std::filesystem::path previous_checkpoint(const std::filesystem::path& file);
 
 }  // namespace castray

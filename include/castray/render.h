@@ -17,8 +17,9 @@ namespace castray {
 struct Progress {
   double fraction = 0;      ///< of the work, in [0,1]
   std::uint64_t paths = 0;  ///< finished camera samples
-  /// The sums so far, each row at the end of a pass, or null while rows are in work. Saved as a .film they
-  /// can be resumed; the result equals that of an uninterrupted render, byte for byte.
+  /// The sums so far, each row at the end of a pass, or null while rows are in work, and of replicates. Saved
+  /// as a .film they can be resumed; the result equals that of an uninterrupted render, byte for byte. With a
+  /// target error they may be those of a pilot, and cannot be resumed.
   const Film* film = nullptr;
 };
 /// Returns false to stop the render as soon as the rows in work are done. What it throws ends the render and

@@ -52,7 +52,11 @@ struct RenderOptions {
   BuildQuality build = BuildQuality::automatic;
   bool generic = false;
   Reuse reuse;
-  std::optional<double> time_limit;  ///< seconds
+  std::optional<double> time_limit;  ///< seconds; every pixel gets a sample, however long that takes
+  /// An early stop comes at the end of a pass over the image, so that the film can be resumed. Else it comes
+  /// at once, and some rows have a sample or some more than others. A pass takes about a second, or one
+  /// sample per pixel if that takes longer.
+  bool whole_passes = true;
   /// relMSE, mean over pixels and channels of (x-r)^2 / (r^2 + 0.01), that the image shall have. A pilot,
   /// whose samples are not in the image, measures the noise of each part of it and so how many samples it
   /// gets.

@@ -2,10 +2,17 @@
 
 namespace castray::cli {
 
-/// From now on SIGINT and SIGTERM are only noted; a second one ends the program at once.
+/// From here on SIGINT, SIGTERM and SIGHUP are only noted; a second one ends the program at once. A SIGHUP
+/// that is ignored, as under nohup, stays ignored.
 void catch_interrupts();
 
 /// Whether one came.
 bool interrupted();
+
+/// From here on SIGUSR1 is only noted.
+void catch_snapshot_requests();
+
+/// Whether one came since the last call.
+bool snapshot_requested();
 
 }  // namespace castray::cli

@@ -54,6 +54,11 @@ void ProgressDisplay::update(const Progress& progress) {
   }
 }
 
+void ProgressDisplay::tell(const std::string& message) {
+  fmt::print(stderr, "{}castray: {}\n", line_open_ ? "\r\x1b[K" : "", message);
+  line_open_ = false;
+}
+
 void ProgressDisplay::finish() {
   if (line_open_) fmt::print(stderr, "\n");
   line_open_ = false;

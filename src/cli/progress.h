@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "castray/render.h"
 #include "cli/render_flags.h"
@@ -13,6 +14,9 @@ class ProgressDisplay {
   explicit ProgressDisplay(ProgressMode mode);
 
   void update(const Progress& progress);
+
+  /// A message on a line of its own.
+  void tell(const std::string& message);
 
   /// Ends the bar's line.
   void finish();

@@ -5,13 +5,12 @@
 #include <memory>
 
 #include "castray/error.h"
-#include "castray/film.h"
 #include "cli/commands.h"
 #include "cli/display_flags.h"
 #include "cli/interrupt.h"
-#include "cli/progress.h"
 #include "cli/render_flags.h"
 #include "cli/render_report.h"
+#include "cli/render_run.h"
 #include "core/files.h"
 
 namespace castray::cli {
@@ -19,10 +18,8 @@ namespace castray::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
+double seconds_since(RenderRun::Clock::time_point begin) {
+  return std::chrono::duration<double>(RenderRun::Clock::now() - begin).count();
 }
 
 /// What the command line says, as text: values are read after the scene's own defaults.
@@ -58,7 +55,10 @@ RenderRequest request_of(const RenderCommand& command, const CommonFlags& common
   RenderRequest request;
   apply_defaults(request, scene);
   for (const GivenFlag& given : command.given) given.flag->set(request, given.flag->name, given.value);
-  if (request.options.target_error && !is_given(command, "spp")) request.options.spp = most_samples_to_target;
+  const bool spp_limits = is_given(command, "spp") || request.options.samples;
+  if (request.options.target_error && !spp_limits) request.options.spp = most_samples_to_target;
+  request.until_time_limit = request.options.time_limit && !request.options.target_error && !spp_limits;
+  if (request.until_time_limit) request.options.spp = most_samples;
   request.outputs.assign(command.outputs.begin(), command.outputs.end());
   if (request.outputs.empty()) request.outputs.push_back(scene.name + ".png");
   request.quiet = common.quiet;
@@ -70,64 +70,30 @@ RenderRequest request_of(const RenderCommand& command, const CommonFlags& common
 void check(const RenderRequest& request) {
   if (request.resume && !request.checkpoint)
     throw InputError("--resume: needs --checkpoint FILE to resume from");
-  if (request.replicates &&
-      (request.checkpoint || request.options.time_limit || request.options.target_error))
+  if (request.replicates && (request.checkpoint || request.preview_seconds || request.options.time_limit ||
+                             request.options.target_error))
     throw InputError(
-        "--replicates: cannot go with --checkpoint, --time-limit or --target-error; leave one out");
+        "--replicates: cannot go with --checkpoint, --preview-every, --time-limit or --target-error; leave "
+        "one "
+        "out");
   if (request.checkpoint && request.options.target_error)
     throw InputError("--target-error: cannot go with --checkpoint; leave one out");
   for (const fs::path& output : request.outputs) check_output_image(output);
   std::vector<fs::path> all = request.outputs;
   if (request.stats) all.push_back(*request.stats);
   check_one_standard_output(all);
-  if (request.checkpoint && !is_film_format(*request.checkpoint))
-    throw InputError(request.checkpoint->string() + ": a checkpoint's name must end in .film");
-  if (request.checkpoint) check_output_image(*request.checkpoint);
   if (request.stats) check_writable(*request.stats);
 }
 
-std::unique_ptr<Film> film_to_resume(const RenderRequest& request) {
-  if (!request.resume || !fs::exists(*request.checkpoint)) return nullptr;
-  return std::make_unique<Film>(read_film(*request.checkpoint));
-}
-
-/// Renders with progress, checkpoints and clean interruption.
-RenderResult render_watched(const Scene& scene, const RenderRequest& request) {
-  catch_interrupts();
-  const std::unique_ptr<Film> start = film_to_resume(request);
-  ProgressDisplay display(request.quiet ? ProgressMode::off : request.progress);
-  Clock::time_point saved = Clock::now();
-  const ProgressCallback watch = [&](const Progress& progress) {
-    display.update(progress);
-    if (request.checkpoint && progress.film && seconds_since(saved) >= request.checkpoint_seconds) {
-      write_film(*request.checkpoint, *progress.film);
-      saved = Clock::now();
-    }
-    return !interrupted();
-  };
-  const PreparedScene prepared = prepare(scene, request);
-  RenderResult result = request.replicates
-                            ? render_replicates(prepared, request.options, request.replicates, watch)
-                            : render(prepared, request.options, watch, start.get());
-  display.finish();
-  return result;
-}
-
-void write_results(const RenderRequest& request, const RenderReport& report) {
-  const Film& film = report.result.film;
-  for (const fs::path& output : request.outputs) write_film(output, film, request.display, report.metadata());
-  if (request.checkpoint) write_film(*request.checkpoint, film);
-  if (request.stats) write_file(*request.stats, report.json());
-}
-
-int exit_code(const RenderRequest& request, Stopped stopped) {
-  if (stopped == Stopped::interrupted) return 130;
-  const bool as_asked = stopped == (request.options.target_error ? Stopped::target_error : Stopped::done);
-  return as_asked ? 0 : 1;
+/// Whether the render came to the end that was asked for.
+bool is_as_asked(const RenderRequest& request, Stopped stopped) {
+  if (request.options.target_error) return stopped == Stopped::target_error;
+  return stopped == Stopped::done || (stopped == Stopped::time_limit && request.until_time_limit);
 }
 
 int render_scene(const RenderCommand& command, const CommonFlags& common) {
-  const Clock::time_point begin = Clock::now();
+  const RenderRun::Clock::time_point begin = RenderRun::Clock::now();
+  catch_snapshot_requests();
   Scene scene = load_scene(command.scene);
   RenderRequest request = request_of(command, common, scene);
   check(request);
@@ -135,16 +101,19 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
   RenderReport report{scene, request.options, command.given};
   report.tells_time = request.metadata_time;
   report.load_seconds = seconds_since(begin);
+  RenderRun run(request, report, begin);
   if (!request.quiet) warn_of_darkening(request.display.tone), report.print_scene(request.verbose);
 
-  report.result = render_watched(scene, request);
+  report.result = run.run(scene);
+  run.save(report.result.film);
   report.total_seconds = seconds_since(begin);
-  write_results(request, report);
-  report.total_seconds = seconds_since(begin);
+  if (request.stats) write_file(*request.stats, report.json());
   report.print_nonfinite();
   if (!request.quiet) report.print_black();
-  if (!request.quiet) report.print_summary(request.outputs);
-  return exit_code(request, report.result.stats.stopped);
+  const Stopped stopped = report.result.stats.stopped;
+  const bool as_asked = is_as_asked(request, stopped);
+  if (!request.quiet) report.print_summary(request.outputs, as_asked);
+  return as_asked ? 0 : stopped == Stopped::interrupted ? 130 : 1;
 }
 
 }  // namespace
@@ -153,8 +122,8 @@ Run add_render(Arguments& arguments, const CommonFlags& common) {
   auto command = std::make_shared<RenderCommand>();
   declare_flags(arguments, *command);
   arguments.footer(
-      "Exit codes: 0 done; 1 stopped by --time-limit or, short of --target-error, by --spp; 2 error; 130 "
-      "interrupted (what was rendered is saved).");
+      "Exit codes: 0 done; 1 stopped by --time-limit short of --spp or --target-error, or by --spp short of "
+      "--target-error; 2 error; 130 interrupted (what was rendered is saved).");
   return [command, &common] { return render_scene(*command, common); };
 }
 

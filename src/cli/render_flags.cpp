@@ -20,7 +20,6 @@ namespace {
 using Text = const std::string&;
 using Request = RenderRequest&;
 
-constexpr std::uint64_t most_samples = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint64_t most_whole = std::numeric_limits<std::uint64_t>::max();
 
 constexpr std::string_view switch_values[] = {"on", "off"};
@@ -179,13 +178,13 @@ const RenderFlag flags[] = {
     {"generic", nullptr, "run the kernel that can do everything, whatever the scene needs", machine,
      [](Request r, Text f, Text t) { r.options.generic = parse_on_off(f, t); }},
 
-    {"time-limit", "SECONDS", "stop rendering after this time; exit code 1 if samples are missing then",
+    {"time-limit", "SECONDS", "the best image in this time; with --spp or --samples: at most so many",
      stopping, [](Request r, Text f, Text t) { r.options.time_limit = parse_number(f, t); }},
     {"target-error", "E",
      "render until the relMSE is about E, more samples where there is more noise; --spp: at most", stopping,
      [](Request r, Text f, Text t) { r.options.target_error = parse_number(f, t); }},
-    {"checkpoint", "FILE", "keep the sums so far in this .film", stopping,
-     [](Request r, Text, Text t) { r.checkpoint = t; }, false},
+    {"checkpoint", "FILE", "keep the sums so far in this .film, and those before in FILE.previous.film",
+     stopping, [](Request r, Text, Text t) { r.checkpoint = t; }, false},
     {"checkpoint-every", "SECONDS", "[60]", stopping,
      [](Request r, Text f, Text t) {
        r.checkpoint_seconds = parse_number(f, t);
@@ -193,6 +192,12 @@ const RenderFlag flags[] = {
      }},
     {"resume", nullptr, "go on from the checkpoint file, if it is there", stopping,
      [](Request r, Text f, Text t) { r.resume = parse_on_off(f, t); }, false},
+    {"preview-every", "SECONDS", "write the outputs so far this often; SIGUSR1 does it once", stopping,
+     [](Request r, Text f, Text t) {
+       r.preview_seconds = parse_number(f, t);
+       if (!(*r.preview_seconds >= 0)) refuse(f, t, "a number of seconds");
+     },
+     false},
 
     {"exposure", "STOPS", "of .ppm and .png [0]", output,
      [](Request r, Text f, Text t) { r.display.exposure = parse_number(f, t); }},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,7 +40,9 @@ struct RenderRequest {
   std::vector<std::filesystem::path> outputs;
   std::optional<std::filesystem::path> checkpoint, stats;
   double checkpoint_seconds = 60;
-  std::uint64_t replicates = 0;  ///< 0: one film that does not tell its noise
+  std::optional<double> preview_seconds;  ///< outputs are rewritten this often
+  bool until_time_limit = false;          ///< no number of samples ends the render
+  std::uint64_t replicates = 0;           ///< 0: one film that does not tell its noise
   bool resume = false, quiet = false, verbose = false;
   ProgressMode progress = ProgressMode::automatic;
 };
@@ -56,6 +59,9 @@ struct RenderFlag {
 };
 
 std::span<const RenderFlag> render_flags();
+
+/// Per pixel.
+inline constexpr std::uint64_t most_samples = std::numeric_limits<std::uint32_t>::max();
 
 /// Sets what a scene's "render" section says. Throws InputError with its place.
 void apply_defaults(RenderRequest& request, const Scene& scene);

@@ -40,14 +40,20 @@ double millions_per_second(std::uint64_t count, double seconds) {
   return seconds > 0 ? static_cast<double>(count) * 1e-6 / seconds : 0;
 }
 
+/// A whole number where it is one.
+nlohmann::json spp_number(const Film& film) {
+  const double spp = film.samples_per_pixel();
+  return spp == std::floor(spp) ? nlohmann::json(static_cast<std::uint64_t>(spp)) : nlohmann::json(spp);
+}
+
 std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
 /// Flags that change neither samples nor how they are shown.
-const std::set<std::string> no_part_of_the_image = {"threads",          "checkpoint", "stats",
-                                                    "checkpoint-every", "resume",     "time-limit",
-                                                    "progress",         "metadata",   "strict"};
+const std::set<std::string> no_part_of_the_image = {"threads", "checkpoint",   "stats",    "checkpoint-every",
+                                                    "resume",  "time-limit",   "progress", "metadata",
+                                                    "strict",  "preview-every"};
 
 std::string text_of(const GivenFlag& given) {
   std::string text = std::string(" --") + given.flag->name;
@@ -102,14 +108,14 @@ void RenderReport::print_nonfinite() const {
     fmt::print(stderr, "  pixel ({},{}), sample {}: {}\n", sample.x, sample.y, sample.sample, replay(sample));
 }
 
-void RenderReport::print_summary(const std::vector<std::filesystem::path>& outputs) const {
+void RenderReport::print_summary(const std::vector<std::filesystem::path>& outputs, bool as_asked) const {
   const RenderStats& s = result.stats;
   const Film& film = result.film;
   if (s.accel_summary.starts_with("BVH"))
     fmt::print(stderr, "BVH generation complete: {}\n", s.accel_summary);
   fmt::print(stderr, "{}: {} triangles, {} x {} pixels, {} spp; {}{}; {} threads\n", scene.name,
-             scene.triangles.size(), film.width(), film.height(), spp(), s.kernel,
-             s.isa == "none" ? "" : " (" + s.isa + ")", s.threads);
+             scene.triangles.size(), film.width(), film.height(), samples_text(film.samples_per_pixel()),
+             s.kernel, s.isa == "none" ? "" : " (" + s.isa + ")", s.threads);
   if (options.epsilon && options.integrator == Integrator::automatic)
     fmt::print(stderr,
                "rendered by the reference integrator: only it has an absolute epsilon (--epsilon {:g})\n",
@@ -124,8 +130,10 @@ void RenderReport::print_summary(const std::vector<std::filesystem::path>& outpu
       millions_per_second(s.rays, s.render_seconds), static_cast<double>(peak_memory_bytes()) / (1 << 20));
   for (const auto& output : outputs) fmt::print(stderr, "wrote {}\n", output.string());
   if (s.expected_error) print_expected_error();
-  if (s.stopped == Stopped::done || s.stopped == Stopped::target_error)
+  if (as_asked)
     fmt::print(stderr, "Render complete\n");
+  else if (s.stopped == Stopped::done)
+    fmt::print(stderr, "Render stopped short of its target by --spp; what was rendered is saved\n");
   else
     fmt::print(stderr, "Render stopped early: {}; what was rendered is saved\n", name_of(s.stopped));
 }
@@ -147,7 +155,7 @@ std::string RenderReport::json() const {
                                    {"scene", scene.file.string()},
                                    {"width", result.film.width()},
                                    {"height", result.film.height()},
-                                   {"spp", spp()},
+                                   {"spp", spp_number(result.film)},
                                    {"seed", options.seed},
                                    {"threads", s.threads},
                                    {"isa", s.isa},
@@ -175,29 +183,19 @@ std::string RenderReport::json() const {
   return object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-Metadata RenderReport::metadata() const {
-  Metadata metadata = describe(result.film);
+Metadata RenderReport::metadata(const Film& film) const {
+  Metadata metadata = describe(film);
   metadata["Software"] = "castray " CASTRAY_VERSION;
   metadata["castray:version"] = CASTRAY_VERSION;
   metadata["castray:scene"] = scene.name;
-  metadata["castray:spp"] = std::to_string(spp());
-  metadata["castray:options"] += repeating_flags(metadata["castray:options"]);
+  metadata["castray:options"] += repeating_flags(metadata["castray:options"], film);
   if (tells_time) metadata["castray:seconds"] = fmt::format("{:.3f}", result.stats.render_seconds);
   return metadata;
 }
 
-std::uint64_t RenderReport::spp() const {
-  const Film& film = result.film;
-  if (!options.target_error) return options.samples ? options.samples->count : options.spp;
-  double samples = 0;
-  for (int y = film.window().y0; y < film.window().y1; ++y)
-    for (int x = film.window().x0; x < film.window().x1; ++x) samples += film.count(x, y);
-  return std::uint64_t(std::llround(samples / (static_cast<double>(film.width()) * film.height())));
-}
-
-std::string RenderReport::repeating_flags(const std::string& known) const {
+std::string RenderReport::repeating_flags(const std::string& known, const Film& film) const {
   const bool all_samples = !options.samples && !options.target_error;
-  std::string flags = all_samples ? fmt::format(" --spp {}", spp()) : "";
+  std::string flags = all_samples ? fmt::format(" --spp {:.0f}", std::ceil(film.samples_per_pixel())) : "";
   for (const GivenFlag& g : given) {
     const std::string name = g.flag->name;
     const bool is_known = (" " + known).find(" --" + name + " ") != std::string::npos;

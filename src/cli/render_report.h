@@ -28,19 +28,19 @@ struct RenderReport {
   void print_scene(bool verbose) const;
   void print_nonfinite() const;
   void print_black() const;  ///< where the image is black though something emits: why
-  void print_summary(const std::vector<std::filesystem::path>& outputs) const;
+  /// `as_asked`: the render came to the end that was asked for.
+  void print_summary(const std::vector<std::filesystem::path>& outputs, bool as_asked) const;
 
   /// The contents of a --stats file.
   std::string json() const;
-  /// What is stored in PNG and EXR files.
-  Metadata metadata() const;
+  /// What is stored in PNG and EXR files of a film of this render.
+  Metadata metadata(const Film& film) const;
 
  private:
   void print_warnings(bool verbose) const;
   void print_expected_error() const;
-  std::uint64_t spp() const;  ///< on average, with a target error
-  /// The flags that, besides those `known`, render the same image of the same scene file.
-  std::string repeating_flags(const std::string& known) const;
+  /// The flags that, besides those `known`, render the same film of the same scene file.
+  std::string repeating_flags(const std::string& known, const Film& film) const;
   /// The command that renders one sample again, alone.
   std::string replay(const NonfiniteSample& sample) const;
 };

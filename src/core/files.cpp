@@ -65,20 +65,27 @@ void write_stream(const fs::path& file, std::ostream& out, const std::function<v
   if (!out) fail(file, "cannot be written: " + reason(errno) + "; free some space or write elsewhere");
 }
 
-/// A new, empty file in `folder` that is removed again unless it takes the target's place.
+/// Makes a renaming in `folder` last. A file system without that guarantee is no error.
+void sync_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+/// A new, empty file in `folder` that is gone again unless it takes the target's place. Where the file system
+/// can do that it has no name until then, so that a killed process leaves nothing behind.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& folder) {
-    static std::atomic<unsigned> number{0};
-    for (int tries = 0; tries < 1000 && descriptor_ < 0; ++tries) {
-      path_ = folder / (".castray-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp");
-      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && errno != EEXIST) break;
-    }
-    if (descriptor_ < 0) {
-      error_ = errno;
-      path_.clear();
-    }
+  explicit TemporaryFile(const fs::path& folder) : folder_(folder) {
+    descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0 && ::access(link().c_str(), F_OK) == 0) return;
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = -1;
+    give_name([&](const fs::path& name) {
+      descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      return descriptor_ >= 0;
+    });
   }
   ~TemporaryFile() {
     std::error_code ignored;
@@ -99,21 +106,57 @@ class TemporaryFile {
     if (::fsync(descriptor_) != 0) fail(file, "cannot be written: " + reason(errno) + "; write elsewhere");
   }
 
+  /// Returns when the new name, too, is on the disk.
   void take_place_of(const fs::path& target) {
     struct stat old;
     std::error_code error;
     if (::stat(target.c_str(), &old) == 0 && ::fchmod(descriptor_, old.st_mode & 07777) != 0)
       fail(target, "cannot be replaced: " + reason(errno));
+    if (path_.empty())
+      give_name([&](const fs::path& name) {
+        return ::linkat(AT_FDCWD, link().c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+      });
+    if (error_) fail(target, "cannot be replaced: " + reason(error_));
     fs::rename(path_, target, error);
     if (error) fail(target, "cannot be replaced: " + error.message());
     path_.clear();
+    sync_folder(folder_);
   }
 
  private:
-  fs::path path_;
+  std::string link() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+  /// Finds a name that is free. `take` takes it, or returns false with `errno`.
+  template <class Take>
+  void give_name(Take take) {
+    static std::atomic<unsigned> number{0};
+    for (int tries = 0; tries < 1000; ++tries) {
+      path_ = folder_ / (".castray-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp");
+      if (take(path_)) return;
+      error_ = errno;
+      if (error_ != EEXIST) break;
+    }
+    path_.clear();
+  }
+
+  fs::path folder_, path_;  ///< no path: it has no name
   int descriptor_ = -1;
   int error_ = 0;
 };
+
+/// Makes `previous` another name of what `file` is. Where there are no hard links, `file` is renamed.
+void keep(const fs::path& file, const fs::path& previous) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return;
+  const fs::path name = previous.string() + ".tmp";
+  fs::remove(name, error);
+  fs::create_hard_link(file, name, error);
+  if (!error)
+    fs::rename(name, previous, error);
+  else
+    fs::rename(file, previous, error);
+  if (error) fail(previous, "cannot be written: " + error.message());
+}
 
 void write_special(const fs::path& file, const fs::path& target,
                    const std::function<void(std::ostream&)>& write) {
@@ -182,24 +225,40 @@ void check_writable(const fs::path& file) {
     fail(file, "the folder " + folder.string() + " is not writable");
 }
 
-void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
-  if (is_standard_output(file)) {
-    std::ostringstream bytes;  // a pipe cannot be sought in
-    write(bytes);
-    return write_standard_output(file, std::move(bytes).str());
-  }
+namespace {
+
+/// `write_file`, with `previous` if it is not empty.
+void replace_file(const fs::path& file, const fs::path& previous,
+                  const std::function<void(std::ostream&)>& write) {
   check_writable(file);
   const fs::path target = link_target(file);
   if (is_special(target)) return write_special(file, target, write);
   TemporaryFile temporary(folder_of(target));
   if (temporary.error()) fail(file, "cannot be written: " + reason(temporary.error()));
   temporary.write(file, write);
+  if (!previous.empty()) keep(target, previous);
   temporary.take_place_of(target);
 }
 
-void write_file(const fs::path& file, std::string_view bytes) {
-  write_file(file,
-             [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+std::function<void(std::ostream&)> writer_of(std::string_view bytes) {
+  return [bytes](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); };
+}
+
+}  // namespace
+
+void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
+  if (is_standard_output(file)) {
+    std::ostringstream bytes;  // a pipe cannot be sought in
+    write(bytes);
+    return write_standard_output(file, std::move(bytes).str());
+  }
+  replace_file(file, {}, write);
+}
+
+void write_file(const fs::path& file, std::string_view bytes) { write_file(file, writer_of(bytes)); }
+
+void write_file_keeping(const fs::path& file, const fs::path& previous, std::string_view bytes) {
+  replace_file(file, previous, writer_of(bytes));
 }
 
 }  // namespace castray

@@ -18,11 +18,17 @@ std::string read_file(const std::filesystem::path& file);
 bool is_standard_output(const std::filesystem::path& file);
 
 /// Writes what `write` puts into the stream to a temporary file beside `file`, waits until it is on the
-/// disk, then renames it, so that `file` is at any time the old one or the new one. A symbolic link is
-/// followed; what is not a regular file (a device, a pipe, the standard output) is written to directly.
-/// Throws InputError, with `file` untouched and no temporary file left, if anything fails or `write` throws.
+/// disk, then renames it, and waits for that too, so that `file` is at any time the old one or the new one. A
+/// symbolic link is followed; what is not a regular file (a device, a pipe, the standard output) is written
+/// to directly. Throws InputError, with `file` untouched and no temporary file left, if anything fails or
+/// `write` throws.
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
 void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The same; the file that was there is kept as `previous`, in the same folder. At any time one of the two is
+/// there and whole.
+void write_file_keeping(const std::filesystem::path& file, const std::filesystem::path& previous,
+                        std::string_view bytes);
 
 /// Throws the InputError that `write_file` would, as far as that can be known without writing: the folder is
 /// missing or not writable, the target is a folder or write-protected.

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "castray/error.h"
 #include "core/text.h"
@@ -54,10 +55,15 @@ std::string items_missing(const std::string& a, const std::string& b) {
   return missing.empty() ? "nothing more" : missing;
 }
 
+std::string difference_of_keys(const std::string& a, const std::string& b) {
+  return items_missing(a, b) + " against " + items_missing(b, a);
+}
+
 }  // namespace
 
 Film::Film(const Window& window, double brightest)
-    : window_(window),
+    : version(CASTRAY_VERSION),
+      window_(window),
       scale_(brightest > 0 ? std::exp2(std::ceil(std::log2(brightest))) : 1.0),
       sums_(3 * static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height())),
       counts_(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height())) {}
@@ -140,18 +146,25 @@ std::vector<Vec3d> Film::replicate_means(const Blocks& wanted) const {
   return means;
 }
 
-void Film::merge(const Film& other) {
+void Film::require_same_render(const Film& other) const {
+  if (key != other.key)
+    throw InputError("the films are of different renders: " + difference_of_keys(key, other.key));
+  if (version != other.version)
+    throw InputError(
+        fmt::format("the films are of different versions of castray: {} and {}", version, other.version));
   if (window_ != other.window_)
     throw InputError("the films show different windows: " + to_string(window_) + " and " +
                      to_string(other.window_));
-  if (key != other.key)
-    throw InputError("the films are of different renders: " + difference_of_keys(key, other.key));
   if (scale_ != other.scale_)
     throw InputError(
         fmt::format("the films are of scenes of different brightness: {} and {}", scale_, other.scale_));
   if (keeps_replicates() != other.keeps_replicates())
     throw InputError(
         "one film keeps replicates and the other does not; render both with --replicates, or none");
+}
+
+void Film::merge(const Film& other) {
+  require_same_render(other);
   samples = joined_ranges(samples, other.samples);
   for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
   for (const Replicate& theirs : other.replicates_) {
@@ -168,8 +181,14 @@ void Film::merge(const Film& other) {
   nonfinite_samples += other.nonfinite_samples;
 }
 
-std::string difference_of_keys(const std::string& a, const std::string& b) {
-  return items_missing(a, b) + " against " + items_missing(b, a);
+double Film::samples_per_pixel() const {
+  const std::uint64_t counted = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
+  return static_cast<double>(counted + nonfinite_samples) / static_cast<double>(counts_.size());
+}
+
+std::string samples_text(double samples_per_pixel) {
+  return fmt::format("{:.{}f}", samples_per_pixel,
+                     samples_per_pixel == std::floor(samples_per_pixel) ? 0 : 1);
 }
 
 Metadata describe(const Film& film) {
@@ -185,9 +204,7 @@ Metadata describe(const Film& film) {
       options += (options.empty() ? "--" : " --") + name + " " + value;
     if (name == "clamp-indirect") metadata["castray:biased"] = item;
   }
-  std::uint64_t spp = 0;
-  for (const SampleRange& range : film.samples) spp += range.count;
-  metadata["castray:spp"] = std::to_string(spp);
+  metadata["castray:spp"] = samples_text(film.samples_per_pixel());
   return metadata;
 }
 

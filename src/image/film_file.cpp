@@ -45,7 +45,7 @@ struct FilmFile {
                       {"replicates", replicates},
                       {"key", film.key},
                       {"nonfinite_samples", film.nonfinite_samples},
-                      {"version", CASTRAY_VERSION}};
+                      {"version", film.version}};
     std::string bytes =
         std::string(magic) + header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
     append_sums(bytes, film.sums_);
@@ -135,6 +135,7 @@ struct FilmFile {
     demand(film.scale_ > 0 && std::isfinite(film.scale_), "bad scale");
     film.key = header.at("key").get<std::string>();
     film.nonfinite_samples = whole(header.at("nonfinite_samples"));
+    film.version = header.at("version").get<std::string>();
     for (const json& index : header.at("replicates")) {
       film.replicates_.push_back({whole(index), {}, {}});
       const std::size_t n = film.replicates_.size();
@@ -164,6 +165,15 @@ void write_film(const std::filesystem::path& file, const Film& film, const Displ
     write_file(file, FilmFile::bytes_of(film));
   else
     write_image(file, film.image(), display, metadata, noise_of(film));
+}
+
+void write_checkpoint(const std::filesystem::path& file, const Film& film) {
+  write_file_keeping(file, previous_checkpoint(file), FilmFile::bytes_of(film));
+}
+
+std::filesystem::path previous_checkpoint(const std::filesystem::path& file) {
+  std::filesystem::path previous = file;
+  return previous.replace_extension(".previous" + file.extension().string());
 }
 
 }  // namespace castray

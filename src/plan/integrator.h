@@ -21,7 +21,7 @@ struct RowStats {
 struct BandWork {
   int height = 1;  ///< of a band
   /// Bands may add to rows of their neighbours. Then `render` locks the rows, there is one band more than
-  /// fits the window, and a stop waits for the end of the pass.
+  /// fits the window, and a stop within a pass leaves a film that cannot be resumed.
   bool overlap = false;
   /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
   /// image. Called by several threads at a time, for different bands.

@@ -1,13 +1,13 @@
 #include "render/row_loop.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <tuple>
 
@@ -19,40 +19,54 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t samples_of_a_pass = 1u << 24;  ///< of the whole window: some seconds of work
-constexpr std::uint64_t longest_pass = 64;             ///< samples per pixel
+constexpr std::uint64_t samples_of_a_pass = 1u << 24;  ///< of the whole window, at most
+constexpr double seconds_of_a_pass = 1;
 constexpr std::size_t reported_nonfinite = 8;
 constexpr double seconds_between_reports = 0.1;
 
-/// The sample counts at which passes end: 1, 2, 4, ... up to the longest pass, then its multiples, and the
-/// last sample.
-class Passes {
+/// How many samples per pixel the next pass gets: twice as many as the one before, as far as that takes about
+/// a second.
+class Pace {
  public:
-  Passes(std::uint64_t samples, std::uint64_t pixels) : samples_(samples) {
-    while (longest_ > 1 && longest_ * pixels > samples_of_a_pass) longest_ /= 2;
+  explicit Pace(std::uint64_t pixels) : longest_(std::max<std::uint64_t>(samples_of_a_pass / pixels, 1)) {}
+
+  /// At least 1.
+  std::uint64_t samples_within(double seconds) const {
+    std::uint64_t samples = std::min(2 * last_, longest_);
+    const double most = std::min(seconds, seconds_of_a_pass) / seconds_per_sample_;
+    if (most < static_cast<double>(samples)) samples = static_cast<std::uint64_t>(std::max(most, 0.0));
+    return std::max<std::uint64_t>(samples, 1);
   }
 
-  /// The first end that is at least n, 1 <= n <= all samples.
-  std::uint64_t end_from(std::uint64_t n) const {
-    return std::min(samples_, n <= longest_ ? std::bit_ceil(n) : (n + longest_ - 1) / longest_ * longest_);
+  void note_pass(std::uint64_t samples, double seconds) {
+    last_ = samples;
+    seconds_per_sample_ = seconds / static_cast<double>(samples);
   }
+  double seconds_per_sample() const { return seconds_per_sample_; }
 
  private:
-  std::uint64_t samples_, longest_ = longest_pass;
+  std::uint64_t longest_, last_ = 0;
+  double seconds_per_sample_ = 0;
 };
 
-/// How many samples each row of an earlier run has: each row was left at the end of a pass or of the run.
-/// Some of its pixels may have less, where samples were not finite.
-std::vector<std::uint64_t> finished_samples(const Film& film, const Passes& passes) {
+/// How many samples each row of an earlier run has: each was left at the end of a pass. Some of its pixels
+/// may have less, where samples were not finite. Throws InputError where others are missing.
+std::vector<std::uint64_t> finished_samples(const Film& film) {
   std::vector<std::uint64_t> finished;
   const Window& w = film.window();
+  std::uint64_t missing = 0;
   for (int y = w.y0; y < w.y1; ++y) {
-    std::uint64_t most = 0;
-    for (int x = w.x0; x < w.x1; ++x) most = std::max<std::uint64_t>(most, film.count(x, y));
-    finished.push_back(most == 0 ? 0 : passes.end_from(most));
-    if (!film.samples.empty() && most <= film.samples[0].count)
-      finished.back() = std::min(finished.back(), film.samples[0].count);
+    std::uint64_t most = 0, sum = 0;
+    for (int x = w.x0; x < w.x1; ++x) {
+      most = std::max<std::uint64_t>(most, film.count(x, y));
+      sum += film.count(x, y);
+    }
+    finished.push_back(most);
+    missing += most * static_cast<std::uint64_t>(w.width()) - sum;
   }
+  if (missing != film.nonfinite_samples)
+    throw InputError(
+        "the film to resume was stopped within a pass; only films of --checkpoint go on to the same bytes");
   return finished;
 }
 
@@ -80,29 +94,17 @@ class ExceptionKeeper {
   std::atomic<bool> any_ = false;
 };
 
-/// What keeps `start` from being continued as `film`, to the samples `wanted`; empty where it can be.
-std::string difference_to_resume(const Film& start, const Film& film, const SampleRange& wanted) {
-  if (start.key != film.key) return difference_of_keys(start.key, film.key);
-  if (start.window() != film.window()) return "another crop";
-  if (start.scale() != film.scale()) return "the scene's lights were of another brightness";
-  if (start.samples.empty()) return "";
-  const SampleRange& held = start.samples.front();
-  if (start.samples.size() == 1 && held.first == wanted.first && held.count <= wanted.count) return "";
-  return fmt::format("its samples begin with {}:{}, and {}:{} are asked for", held.first, held.count,
-                     wanted.first, wanted.count);
-}
-
 /// The state of one run, shared by its threads.
 class RowLoop {
  public:
   RowLoop(const Job& job, const ProgressCallback& progress, const Film* start, const SampleMap& map)
-      : time_limit_(job.options.time_limit),
+      : time_limit_(job.options.time_limit.value_or(std::numeric_limits<double>::infinity())),
+        whole_passes_(job.options.whole_passes),
         progress_(progress),
         map_(map),
         window_(job.window),
         samples_(map.range()),
-        passes_(samples_.count,
-                static_cast<std::uint64_t>(window_.width()) * static_cast<std::uint64_t>(window_.height())) {
+        pace_(static_cast<std::uint64_t>(window_.width()) * static_cast<std::uint64_t>(window_.height())) {
     result_.film = Film(window_, job.brightest);
     result_.film.key = job.key;
     finished_.resize(static_cast<std::size_t>(window_.height()));
@@ -115,12 +117,12 @@ class RowLoop {
 
   RenderResult run(const BandWork& work) {
     begin_ = Clock::now();
-    for (std::uint64_t end = 0; end < samples_.count;) {
-      end = passes_.end_from(end + 1);
-      run_pass(end, work);
+    while (!stopped_ && least_finished() < samples_.count) {
+      run_pass(end_of_next_pass(), work);
       note_samples();
       if (!stopped_) report(&result_.film);
-      if (stopped_) break;
+      if (!stopped_ && whole_passes_ && seconds() + pace_.seconds_per_sample() > time_limit_)
+        stop(Stopped::time_limit);
     }
     RenderStats& stats = result_.stats;
     stats.render_seconds = seconds();
@@ -134,31 +136,62 @@ class RowLoop {
  private:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
+  /// Throws InputError that says how `start` differs from the film of this render.
+  void require_resumable(const Film& start) const {
+    result_.film.require_same_render(start);
+    for (const SampleRange& have : start.samples)
+      if (have.first != samples_.first || have.count > samples_.count)
+        throw InputError(fmt::format("it holds samples {}:{}, this render is of {}:{}", have.first,
+                                     have.count, samples_.first, samples_.count));
+  }
+
   void resume(const Film& start) {
-    Film& film = result_.film;
-    if (const std::string difference = difference_to_resume(start, film, samples_); !difference.empty())
-      throw InputError("the film to resume is of another render: " + difference +
-                       "; remove it or give the same options");
-    film = start;
-    finished_ = finished_samples(film, passes_);
+    try {
+      require_resumable(start);
+    } catch (const InputError& error) {
+      throw InputError(std::string("the film to resume is of another render: ") + error.what() +
+                       "; give the options that it has, or leave it out");
+    }
+    result_.film = start;
+    finished_ = finished_samples(start);
+  }
+
+  std::uint64_t least_finished() const { return *std::min_element(finished_.begin(), finished_.end()); }
+  std::uint64_t most_finished() const { return *std::max_element(finished_.begin(), finished_.end()); }
+
+  /// Rows that an earlier run left behind catch up first.
+  std::uint64_t end_of_next_pass() const {
+    const std::uint64_t done = least_finished(), most = most_finished();
+    if (most > done) return most;
+    return done + std::min(samples_.count - done, pace_.samples_within(time_limit_ - seconds()));
   }
 
   /// Brings every row to `end` samples.
   void run_pass(std::uint64_t end, const BandWork& work) {
     const int bands = (window_.height() + work.height - 1) / work.height + (work.overlap ? 1 : 0);
-    const std::uint64_t begin = finished_.front();  // of all rows, where bands overlap
+    const std::uint64_t begin = least_finished();
+    if (work.overlap && most_finished() > begin)
+      throw InputError("the film to resume was stopped within a pass of shared paths; render anew");
+    const double start = seconds();
     ExceptionKeeper keeper;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(result_.stats.threads)
     for (int band = 0; band < bands; ++band)
       if (!keeper.any()) keeper.run([&] { run_band(band, begin, end, work); });
     keeper.rethrow();
-    if (work.overlap) std::fill(finished_.begin(), finished_.end(), std::max(begin, end));
+    if (work.overlap) std::fill(finished_.begin(), finished_.end(), end);
+    pace_.note_pass(end - begin, seconds() - start);
+  }
+
+  /// Whether the bands of the pass that are not in work are left out. At the time limit the first pass goes
+  /// on, so that the image has no gaps.
+  bool breaks_off(std::uint64_t begin, const BandWork& work) const {
+    return stopped_ && !(work.overlap && whole_passes_) && (begin > 0 || reason_ == Stopped::interrupted);
   }
 
   void run_band(int band, std::uint64_t begin, std::uint64_t end, const BandWork& work) {
     const int y0 = window_.y0 + band * work.height, y1 = std::min(y0 + work.height, window_.y1);
     const std::uint64_t done = work.overlap ? begin : *row_of(y0);
-    if (done >= end || (stopped_ && !work.overlap)) return;
+    if (done >= end || breaks_off(begin, work)) return;
     RowStats stats;
     const SampleRange samples{samples_.first + done, end - done};
     work.render(y0, y1, samples, map_, result_.film, stats);
@@ -188,11 +221,12 @@ class RowLoop {
     const std::unique_lock lock(reporting_, std::try_to_lock);
     if (!lock) return;
     const double now = seconds();
-    if (time_limit_ && now >= *time_limit_) stop(Stopped::time_limit);
+    if (now >= time_limit_) stop(Stopped::time_limit);
     if (!progress_ || (!film && now < last_report_ + seconds_between_reports)) return;
     last_report_ = now;
     const std::uint64_t paths = paths_;
-    const double fraction = static_cast<double>(paths) / static_cast<double>(all_);
+    const double fraction =
+        std::max(static_cast<double>(paths) / static_cast<double>(all_), std::min(now / time_limit_, 1.0));
     if (!progress_({.fraction = fraction, .paths = paths - paths_before_, .film = film}))
       stop(Stopped::interrupted);
   }
@@ -204,18 +238,19 @@ class RowLoop {
 
   /// The film holds the samples up to the end of the furthest row.
   void note_samples() {
-    const std::uint64_t most = *std::max_element(finished_.begin(), finished_.end());
+    const std::uint64_t most = most_finished();
     result_.film.samples.clear();
     if (most > 0) result_.film.samples.push_back({samples_.first, most});
   }
 
-  std::optional<double> time_limit_;  ///< seconds
+  double time_limit_;  ///< seconds
+  bool whole_passes_;
   const ProgressCallback& progress_;
   const SampleMap& map_;
   Window window_;
   SampleRange samples_;
   std::uint64_t all_ = map_.total();  ///< paths
-  Passes passes_;
+  Pace pace_;
   RenderResult result_;
   std::vector<std::uint64_t> finished_;  ///< samples of each row, counted from the first
   Clock::time_point begin_;

@@ -52,7 +52,7 @@ class TargetRun {
         [&](const Progress& p) {
           const std::uint64_t paths = before + p.paths;
           const double fraction = static_cast<double>(paths) / static_cast<double>(planned_);
-          return !progress_ || progress_({std::min(fraction, 1.0), paths, nullptr});
+          return !progress_ || progress_({std::min(fraction, 1.0), paths, p.film});
         },
         nullptr, map, work_);
     add_stats(result.stats, stats_);

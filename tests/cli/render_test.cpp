@@ -1,7 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include <signal.h>
-
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -23,14 +21,6 @@ RunResult render_small(const TemporaryFolder& folder, std::vector<std::string> m
   std::vector<std::string> arguments{"render", cornell, "--size", "16x16", "--integrator", "reference"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run_castray(arguments, folder.path());
-}
-
-/// A render that would take hours.
-std::vector<std::string> endless(std::vector<std::string> more) {
-  std::vector<std::string> arguments{"render",     cornell,        "--size",    "64x64", "--spp",
-                                     "4000000000", "--integrator", "reference", "-o",    "x.pfm"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
 }
 
 nlohmann::json stats_in(const TemporaryFolder& folder) {
@@ -109,57 +99,6 @@ TEST_CASE("the scene's own defaults apply, the command line wins") {
   const RunResult wrong = run_castray(arguments, folder.path());
   CHECK(wrong.exit_code == 2);
   CHECK_THAT(wrong.err, Contains("own.json:6:") && Contains("did you mean 'seed'"));
-}
-
-TEST_CASE("SIGINT and SIGTERM save what was rendered and exit with 130") {
-  for (const int signal : {SIGINT, SIGTERM}) {
-    const TemporaryFolder folder;
-    const RunResult result =
-        run_castray(endless({"--progress", "lines", "--checkpoint", "c.film", "--stats", "s.json"}),
-                    RunSettings{.folder = folder.path(), .signal = signal});
-    CHECK(result.exit_code == 130);
-    CHECK_THAT(result.err, Contains("stopped early: interrupted"));
-    CHECK(folder.names() == std::vector<std::string>{"c.film", "s.json", "x.pfm"});
-    CHECK(stats_in(folder)["stopped"] == "interrupted");
-    CHECK(read_film(folder / "c.film").count(0, 0) > 0);
-    const Image image = read_image(folder / "x.pfm").image;
-    CHECK(image.at(32, 10).x > 10);  // the light
-  }
-}
-
-TEST_CASE("a time limit stops early, says so and exits with 1") {
-  const TemporaryFolder folder;
-  const RunResult result = run_castray(endless({"--time-limit", "0.2", "--stats", "s.json"}), folder.path());
-  CHECK(result.exit_code == 1);
-  CHECK_THAT(result.err, Contains("stopped early: time-limit"));
-  CHECK(stats_in(folder)["stopped"] == "time-limit");
-  CHECK(read_image(folder / "x.pfm").image.at(32, 10).x > 10);
-}
-
-TEST_CASE("a checkpoint is resumed to the same bytes") {
-  const TemporaryFolder folder;
-  REQUIRE(render_small(folder, {"--spp", "12", "-o", "whole.film", "-q"}).exit_code == 0);
-  REQUIRE(render_small(folder, {"--spp", "5", "-o", "x.pfm", "--checkpoint", "c.film", "-q"}).exit_code == 0);
-  REQUIRE(render_small(folder, {"--spp", "12", "-o", "x.film", "--checkpoint", "c.film", "--resume", "-q"})
-              .exit_code == 0);
-  CHECK(read_file(folder / "x.film") == read_file(folder / "whole.film"));
-  const RunResult other =
-      render_small(folder, {"--spp", "12", "--seed", "3", "--checkpoint", "c.film", "--resume", "-q"});
-  CHECK(other.exit_code == 2);
-  CHECK_THAT(other.err, Contains("another render"));
-}
-
-TEST_CASE("progress is a bar, lines, or nothing") {
-  const TemporaryFolder folder;
-  const auto progress = [&](const char* mode) {
-    return run_castray(endless({"--time-limit", "1.3", "--progress", mode}), folder.path()).err;
-  };
-  const std::string bar = progress("bar"), lines = progress("lines"), automatic = progress("auto");
-  CHECK_THAT(bar, Contains("\r[") && Contains(" %") && Contains("elapsed") && Contains("left") &&
-                      Contains("Msamples/s"));
-  CHECK_THAT(lines, Contains("elapsed") && Contains("left") && !Contains("\r"));
-  CHECK_THAT(automatic, Contains("elapsed") && !Contains("\r"));  // stderr is no terminal here
-  CHECK_THAT(progress("off"), !Contains("elapsed"));
 }
 
 TEST_CASE("render refuses what it does not understand, in one line, before it starts") {

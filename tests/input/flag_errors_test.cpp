@@ -88,7 +88,8 @@ const std::vector<Case> cases = {
     render({"--target-error", "1e-3", "--checkpoint", "x.film"},
            "--target-error: cannot go with --checkpoint; leave one out"),
     render({"--target-error", "1e-3", "--replicates", "4"},
-           "--replicates: cannot go with --checkpoint, --time-limit or --target-error; leave one out"),
+           "--replicates: cannot go with --checkpoint, --preview-every, --time-limit or --target-error; "
+           "leave one out"),
     render({"--exposure", "bright"}, "--exposure 'bright': must be a number"),
     // Sizes and windows
     render({"--size", "640"}, "--size '640': must be WIDTHxHEIGHT, as in 640x480"),

@@ -44,43 +44,85 @@ inline std::string file_content(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Runs the built program and waits for its end.
-inline RunResult run_castray(const std::vector<std::string>& arguments, const RunSettings& settings = {}) {
-  const TemporaryFolder capture;
-  const std::string out = settings.output_file.empty() ? std::string(capture / "out") : settings.output_file;
-  const std::string err = capture / "err";
-  std::vector<char*> argv{const_cast<char*>(CASTRAY_PROGRAM)};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
+/// The built program, running.
+class CastrayProcess {
+ public:
+  CastrayProcess(const std::vector<std::string>& arguments, const RunSettings& settings)
+      : settings_(settings) {
+    std::vector<char*> argv{const_cast<char*>(CASTRAY_PROGRAM)};
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    child_ = fork();
+    if (child_ < 0) throw std::runtime_error("cannot fork");
+    if (child_ == 0) become(argv);
+  }
+  ~CastrayProcess() {
+    if (!ended()) {
+      kill(child_, SIGKILL);
+      wait();
+    }
+  }
+  CastrayProcess(const CastrayProcess&) = delete;
+  CastrayProcess& operator=(const CastrayProcess&) = delete;
 
-  const pid_t child = fork();
-  if (child < 0) throw std::runtime_error("cannot fork");
-  if (child == 0) {
+  std::string err() const { return file_content(err_); }
+  void send(int signal) const { kill(child_, signal); }
+  bool ended() {
+    if (!ended_) ended_ = wait4(child_, &status_, WNOHANG, &usage_) != 0;
+    return ended_;
+  }
+  /// Waits until `condition` holds or the program has ended; returns which.
+  template <class Condition>
+  bool wait_until(Condition condition) {
+    while (!condition()) {
+      if (ended()) return condition();
+      usleep(10000);
+    }
+    return true;
+  }
+  RunResult wait() {
+    if (!ended_) wait4(child_, &status_, 0, &usage_);
+    ended_ = true;
+    return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_),
+            settings_.output_file.empty() ? file_content(out_) : "", err(), usage_.ru_maxrss};
+  }
+
+ private:
+  [[noreturn]] void become(const std::vector<char*>& argv) const {
     const auto redirect = [](int descriptor, const std::string& file, int flags) {
       const int opened = open(file.c_str(), flags, 0666);
       if (opened < 0 || dup2(opened, descriptor) < 0) _exit(126);
       close(opened);
     };
-    redirect(0, settings.input_file, O_RDONLY);
-    redirect(1, out, O_WRONLY | O_CREAT | O_TRUNC);
-    redirect(2, err, O_WRONLY | O_CREAT | O_TRUNC);
-    if (!settings.folder.empty() && chdir(settings.folder.c_str()) != 0) _exit(126);
-    for (const auto& [name, value] : settings.variables) setenv(name.c_str(), value.c_str(), 1);
-    const rlimit largest_file{settings.largest_file, settings.largest_file};
+    redirect(0, settings_.input_file, O_RDONLY);
+    redirect(1, settings_.output_file.empty() ? out_ : settings_.output_file, O_WRONLY | O_CREAT | O_TRUNC);
+    redirect(2, err_, O_WRONLY | O_CREAT | O_TRUNC);
+    if (!settings_.folder.empty() && chdir(settings_.folder.c_str()) != 0) _exit(126);
+    for (const auto& [name, value] : settings_.variables) setenv(name.c_str(), value.c_str(), 1);
+    const rlimit largest_file{settings_.largest_file, settings_.largest_file};
     if (setrlimit(RLIMIT_FSIZE, &largest_file) != 0) _exit(126);
-    alarm(settings.seconds);
+    alarm(settings_.seconds);
     execv(argv[0], argv.data());
     _exit(127);
   }
+
+  RunSettings settings_;
+  TemporaryFolder capture_;
+  std::string out_ = capture_ / "out", err_ = capture_ / "err";
+  pid_t child_ = -1;
+  int status_ = 0;
+  rusage usage_{};
+  bool ended_ = false;
+};
+
+/// Runs the built program and waits for its end.
+inline RunResult run_castray(const std::vector<std::string>& arguments, const RunSettings& settings = {}) {
+  CastrayProcess process(arguments, settings);
   if (settings.signal != 0) {
-    while (file_content(err).empty() && waitpid(child, nullptr, WNOHANG) == 0) usleep(10000);
-    kill(child, settings.signal);
+    process.wait_until([&] { return !process.err().empty(); });
+    if (!process.ended()) process.send(settings.signal);
   }
-  int status = 0;
-  rusage usage{};
-  wait4(child, &status, 0, &usage);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-          settings.output_file.empty() ? file_content(out) : "", file_content(err), usage.ru_maxrss};
+  return process.wait();
 }
 
 /// The same, in `folder`.

@@ -1,0 +1,136 @@
+#include "cli/render_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "castray/error.h"
+#include "cli/interrupt.h"
+#include "cli/temporary_folder.h"
+#include "core/files.h"
+
+namespace castray::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+double seconds_since(RenderRun::Clock::time_point begin) {
+  return std::chrono::duration<double>(RenderRun::Clock::now() - begin).count();
+}
+
+RenderOptions first_sample_of(RenderOptions options) {
+  options.time_limit.reset();
+  options.spp = 1;
+  if (options.samples) options.samples->count = 1;
+  return options;
+}
+
+/// Statistics of two parts of one render, the later one last.
+RenderStats sum_of(const RenderStats& earlier, RenderStats later) {
+  later.render_seconds += earlier.render_seconds - earlier.pilot_seconds;
+  later.paths += earlier.paths;
+  later.rays += earlier.rays;
+  if (later.nonfinite.empty()) later.nonfinite = earlier.nonfinite;
+  return later;
+}
+
+}  // namespace
+
+RenderRun::RenderRun(const RenderRequest& request, const RenderReport& report, Clock::time_point begin)
+    : request_(request),
+      report_(report),
+      begin_(begin),
+      display_(request.quiet ? ProgressMode::off : request.progress) {
+  if (request.checkpoint)
+    checkpoint_.emplace(*request.checkpoint, request.checkpoint_seconds, request.resume);
+}
+
+RenderResult RenderRun::run(const Scene& scene) {
+  const std::optional<Film> start = checkpoint_ ? checkpoint_->film_to_resume() : std::nullopt;
+  catch_interrupts();
+  if (start && !request_.quiet)
+    fmt::print(stderr, "castray: going on from {}: {} of {} samples per pixel are there\n",
+               checkpoint_->file().string(), samples_text(start->samples_per_pixel()), request_.options.spp);
+  const PreparedScene prepared = prepare(scene, request_);
+  RenderResult result = render_all(prepared, start ? &*start : nullptr);
+  display_.finish();
+  return result;
+}
+
+RenderResult RenderRun::render_all(const PreparedScene& scene, const Film* start) {
+  if (request_.options.time_limit) return render_in_time(scene, start);
+  const ProgressCallback progress = [this](const Progress& p) { return watch(p); };
+  if (request_.replicates) return render_replicates(scene, request_.options, request_.replicates, progress);
+  RenderOptions options = request_.options;
+  options.whole_passes = request_.checkpoint.has_value();
+  return render(scene, options, progress, start);
+}
+
+/// The limit is of the whole program. How long it will take to write the outputs is tried with a first film.
+RenderResult RenderRun::render_in_time(const PreparedScene& scene, const Film* start) {
+  const ProgressCallback progress = [this](const Progress& p) { return watch(p); };
+  RenderOptions options = request_.options;
+  options.whole_passes = request_.checkpoint.has_value();
+  RenderResult first;
+  double writing = 0;
+  if (!options.target_error) {
+    if (!start || start->samples.empty()) {
+      first = render(scene, first_sample_of(options), progress, start);
+      start = &first.film;
+    }
+    writing = seconds_to_write(*start);
+  }
+  options.time_limit = std::max(*options.time_limit - seconds_since(begin_) - writing, 1e-9);
+  RenderResult result = render(scene, options, progress, start);
+  result.stats = sum_of(first.stats, std::move(result.stats));
+  return result;
+}
+
+double RenderRun::seconds_to_write(const Film& film) const {
+  const TemporaryFolder folder;
+  const Clock::time_point begin = Clock::now();
+  try {
+    for (const fs::path& output : request_.outputs)
+      write(folder.path() / ("trial" + suffix_of(output)), film);
+  } catch (const InputError&) {
+    // a full disk may be another one than that of the outputs
+  }
+  return seconds_since(begin);
+}
+
+bool RenderRun::watch(const Progress& progress) {
+  display_.update(progress);
+  if (progress.film) watch_film(*progress.film);
+  return !interrupted();
+}
+
+void RenderRun::watch_film(const Film& film) {
+  const bool requested = snapshot_requested();
+  if (checkpoint_ && requested)
+    checkpoint_->save(film);
+  else if (checkpoint_)
+    checkpoint_->save_if_due(film);
+  if (!requested && !is_preview_due()) return;
+  for (const fs::path& output : request_.outputs)
+    if (!is_standard_output(output)) write(output, film);
+  previewed_ = Clock::now();
+  if (requested && !request_.quiet)
+    display_.tell(
+        fmt::format("snapshot of {} samples per pixel written", samples_text(film.samples_per_pixel())));
+}
+
+bool RenderRun::is_preview_due() const {
+  return request_.preview_seconds && seconds_since(previewed_) >= *request_.preview_seconds;
+}
+
+void RenderRun::write(const fs::path& output, const Film& film) const {
+  write_film(output, film, request_.display, report_.metadata(film));
+}
+
+void RenderRun::save(const Film& film) {
+  if (checkpoint_) checkpoint_->save(film);
+  for (const fs::path& output : request_.outputs) write(output, film);
+}
+
+}  // namespace castray::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "cli/checkpoint.h"
+#include "cli/progress.h"
+#include "cli/render_flags.h"
+#include "cli/render_report.h"
+
+namespace castray::cli {
+
+/// Renders what is requested: with progress, checkpoints, snapshots of the outputs, and signals answered.
+class RenderRun {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// `report` tells of the scene; `begin` is when the program started, for the time limit.
+  RenderRun(const RenderRequest& request, const RenderReport& report, Clock::time_point begin);
+
+  RenderResult run(const Scene& scene);
+
+  /// Writes the film to the checkpoint, then to the outputs.
+  void save(const Film& film);
+
+ private:
+  RenderResult render_all(const PreparedScene& scene, const Film* start);
+  RenderResult render_in_time(const PreparedScene& scene, const Film* start);
+  double seconds_to_write(const Film& film) const;
+
+  /// Returns whether the render goes on.
+  bool watch(const Progress& progress);
+  void watch_film(const Film& film);
+  bool is_preview_due() const;
+  void write(const std::filesystem::path& output, const Film& film) const;
+
+  const RenderRequest& request_;
+  const RenderReport& report_;
+  Clock::time_point begin_, previewed_ = Clock::now();
+  std::optional<Checkpoint> checkpoint_;
+  ProgressDisplay display_;
+};
+
+}  // namespace castray::cli
