@@ -81,18 +81,31 @@ class Film {
   /// are not parts of one render or if their sample ranges overlap.
   void merge(const Film& other);
 
-  /// Throws InputError that names what differs if the two are not parts of one render: `key`, `version`,
-  /// window, scale, whether replicates are kept.
-  void require_same_render(const Film& other) const;
+  /// In what the two are not of one render, as "seed=0 against seed=4": items of `key`, `version`, the
+  /// scene's brightness, whether replicates are kept. Empty if they are; their windows and samples may
+  /// differ.
+  std::string difference_from(const Film& other) const;
+
+  /// A film of the same render, of another window, without samples.
+  Film without_samples(const Window& window) const;
+
+  /// Adds the sums of `other`, whose window lies in this one's, and which is of the same render and has no
+  /// sample of a pixel that this film has. `samples` are left to the caller.
+  void add(const Film& other);
 
   /// Samples taken, on average over the pixels, those that were not finite included.
   double samples_per_pixel() const;
+
+  /// How many of `samples` its pixels lack: those of a render that was stopped within a pass.
+  std::uint64_t missing_samples() const;
 
   /// All that the samples depend on besides their index (scene, seed, options), as "name=value" items
   /// separated by "; "; in a value '%', ';', '=' and control characters are written as "%XX".
   std::string key;
   std::string version;               ///< of the castray that rendered it
   std::vector<SampleRange> samples;  ///< rendered so far, ascending, disjoint, not adjacent
+  /// The samples of the whole render of which this film is a part, if that is known.
+  std::optional<SampleRange> planned;
   std::uint64_t nonfinite_samples = 0;
 
  private:
@@ -106,6 +119,8 @@ class Film {
     std::vector<Sum> sums;              ///< 3 per block
     std::vector<std::uint64_t> counts;  ///< samples, per block
   };
+  void add(const Replicate& theirs, const Blocks& their_blocks);
+
   friend struct FilmFile;  // reads and writes the sums as they are
 
   std::size_t index(int x, int y) const {
@@ -135,6 +150,10 @@ std::string samples_text(double samples_per_pixel);
 
 /// Reads a .film file. Throws InputError if it is not one, is truncated or corrupt.
 Film read_film(const std::filesystem::path& file);
+
+/// Reads what a .film says of itself, without its sums: window, key, version, samples. The same errors, but
+/// for what the sums would show.
+Film read_film_header(const std::filesystem::path& file);
 
 /// Writes the film losslessly to a .film file, else its image (see `write_image`). The bytes of a .film
 /// depend only on the samples and `key`, not on the order in which they were added and merged.

@@ -30,6 +30,8 @@ struct RenderOptions {
   std::optional<Window> crop;          ///< only x0..y1 are read
   std::uint64_t spp = 64;              ///< samples per pixel; with a target error, the most
   std::optional<SampleRange> samples;  ///< only these sample indices; else 0 .. spp-1
+  /// With `samples`: those of the whole render, of which they are a part; noted in the film.
+  std::optional<SampleRange> planned;
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all that this process may use
   Integrator integrator = Integrator::automatic;

@@ -29,7 +29,8 @@ constexpr Subcommand subcommands[] = {
     {"accept", "make an image the reference", add_accept},
     {"bench", "time against error, of castray and of other renderers", add_bench},
     {"info", "what a scene holds, what it needs, warnings", add_info},
-    {"merge", "add films of disjoint sample ranges", add_merge},
+    {"merge", "add films of one render: parts, sample ranges, crops", add_merge},
+    {"submit", "render in parts on many machines, and merge them", add_submit},
     {"convert", "write an image in another format", add_convert},
     {"completions", "print what makes a shell complete castray's flags, or the manual page", add_completions},
 };

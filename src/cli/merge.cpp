@@ -1,7 +1,12 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
 #include <memory>
+#include <span>
 
 #include "castray/error.h"
-#include "castray/film.h"
+#include "castray/merge_films.h"
 #include "cli/commands.h"
 #include "cli/display_flags.h"
 
@@ -9,26 +14,48 @@ namespace castray::cli {
 
 namespace {
 
+/// Says on stderr how many films are added, every few seconds.
+class FilmMeter {
+ public:
+  void tell(std::size_t done, std::size_t all) {
+    const Clock::time_point now = Clock::now();
+    if (now - told_ < std::chrono::seconds(3)) return;
+    told_ = now;
+    fmt::print(stderr, "castray: {} of {} films\n", done, all);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point told_ = Clock::now();
+};
+
 struct Merge {
   std::vector<std::filesystem::path> inputs, outputs;
   DisplayFlags flags;
+  bool partial = false;
+
+  /// Throws InputError unless what is there shall do.
+  void tell_missing(const std::vector<std::string>& missing) const {
+    constexpr std::size_t most = 8;
+    const auto shown = std::span(missing).first(std::min(missing.size(), most));
+    std::string text = fmt::format("{}", fmt::join(shown, ", "));
+    if (missing.size() > most) text += fmt::format(" and {} more", missing.size() - most);
+    if (!partial)
+      throw InputError("missing: " + text + "; render them, or give --partial to merge what is there");
+    fmt::print(stderr, "castray: warning: missing: {}\n", text);
+  }
 
   int run(const CommonFlags& common) const {
     const Display display = flags.display();
     if (!common.quiet) warn_of_darkening(display.tone);
     check_one_standard_output(outputs);
     for (const auto& output : outputs) check_output_image(output);
-    Film whole = read_film(inputs.front());
-    for (std::size_t i = 1; i < inputs.size(); ++i) {
-      const Film part = read_film(inputs[i]);
-      try {
-        whole.merge(part);
-      } catch (const InputError& error) {
-        throw InputError({inputs[i].string()}, "cannot be merged with " + inputs.front().string() +
-                                                   (i > 1 ? " and those between: " : ": ") + error.what());
-      }
-    }
-    for (const auto& output : outputs) write_film(output, whole, display, describe(whole));
+    FilmMeter meter;
+    const MergedFilm merged = merge_films(inputs, [&](std::size_t done) {
+      if (!common.quiet) meter.tell(done, inputs.size());
+    });
+    if (!merged.missing.empty()) tell_missing(merged.missing);
+    for (const auto& output : outputs) write_film(output, merged.film, display, describe(merged.film));
     if (common.verbose) tell_written(outputs);
     return 0;
   }
@@ -38,8 +65,10 @@ struct Merge {
 
 Run add_merge(Arguments& arguments, const CommonFlags& common) {
   auto merge = std::make_shared<Merge>();
-  arguments.add_positional("FILM", merge->inputs, "films of disjoint --samples ranges of one render")
+  arguments
+      .add_positional("FILM", merge->inputs, "films of one render: --part, or disjoint --samples or --crop")
       .required();
+  arguments.add_switch("--partial", merge->partial, "merge what is there where parts are missing");
   add_outputs(arguments, merge->outputs);
   merge->flags.add_to(arguments);
   merge->flags.add_bits_to(arguments);

@@ -23,9 +23,9 @@ std::string last_line(const std::string& text) {
   return last;
 }
 
-int exit_code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
-
 }  // namespace
+
+int exit_code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
 
 ProcessResult run_command(const std::string& command) {
   const TemporaryFolder folder;

@@ -12,6 +12,9 @@ struct ProcessResult {
   std::string last_error;  ///< the last line of its standard error that is not blank
 };
 
+/// The exit code in a status of `wait`: 128 + signal if one ended the process.
+int exit_code_of(int status);
+
 /// Runs `command` by the shell and waits for it.
 ProcessResult run_command(const std::string& command);
 

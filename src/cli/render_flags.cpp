@@ -102,6 +102,11 @@ const RenderFlag flags[] = {
      [](Request r, Text f, Text t) { r.options.spp = parse_whole(f, t, 1, most_samples); }},
     {"samples", "FIRST:COUNT", "render these sample indices only, for 'castray merge'", sampling, set_samples,
      false},
+    {"part", "I/N|auto|auto/N",
+     "part I of N of the samples, from 0, for 'castray merge'; auto: as a Slurm array, Kubernetes, AWS Batch "
+     "or "
+     "MPI says; {part} in names of files is its number",
+     sampling, [](Request r, Text f, Text t) { r.part = parse_part(f, t); }, false},
     {"seed", "N", "[0]", sampling,
      [](Request r, Text f, Text t) { r.options.seed = parse_whole(f, t, 0, most_whole); }},
     {"replicates", "R", "share the samples out to R independent replicates, for 'castray compare --ztest'",

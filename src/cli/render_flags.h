@@ -10,6 +10,7 @@
 #include "castray/image.h"
 #include "castray/render.h"
 #include "castray/scene.h"
+#include "cli/part.h"
 #include "plan/fault.h"
 
 namespace castray::cli {
@@ -42,6 +43,7 @@ struct RenderRequest {
   double checkpoint_seconds = 60;
   std::optional<double> preview_seconds;  ///< outputs are rewritten this often
   bool until_time_limit = false;          ///< no number of samples ends the render
+  std::optional<Part> part;               ///< only these of the samples
   std::uint64_t replicates = 0;           ///< 0: one film that does not tell its noise
   bool resume = false, quiet = false, verbose = false;
   ProgressMode progress = ProgressMode::automatic;

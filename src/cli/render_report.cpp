@@ -55,11 +55,6 @@ const std::set<std::string> no_part_of_the_image = {"threads", "checkpoint",   "
                                                     "resume",  "time-limit",   "progress", "metadata",
                                                     "strict",  "preview-every"};
 
-std::string text_of(const GivenFlag& given) {
-  std::string text = std::string(" --") + given.flag->name;
-  return given.flag->metavar ? text + " " + shell_word(given.value) : text;
-}
-
 }  // namespace
 
 void RenderReport::print_warnings(bool verbose) const {
@@ -198,19 +193,23 @@ std::string RenderReport::repeating_flags(const std::string& known, const Film& 
   std::string flags = all_samples ? fmt::format(" --spp {:.0f}", std::ceil(film.samples_per_pixel())) : "";
   for (const GivenFlag& g : given) {
     const std::string name = g.flag->name;
+    if (name == "part") {
+      flags += fmt::format(" --samples {}:{}", options.samples->first, options.samples->count);
+      continue;
+    }
     const bool is_known = (" " + known).find(" --" + name + " ") != std::string::npos;
     if (!is_known && !no_part_of_the_image.contains(name) && !(all_samples && name == "spp"))
-      flags += text_of(g);
+      flags += g.text();
   }
   return flags;
 }
 
 std::string RenderReport::replay(const NonfiniteSample& sample) const {
-  static const std::set<std::string> other_samples = {"spp", "samples", "crop", "target-error"};
+  static const std::set<std::string> other_samples = {"spp", "samples", "part", "crop", "target-error"};
   std::string command = "castray render " + shell_word(scene.file.string());
   for (const GivenFlag& g : given)
     if (!no_part_of_the_image.contains(g.flag->name) && !other_samples.contains(g.flag->name))
-      command += text_of(g);
+      command += g.text();
   return command + fmt::format(" --crop {},{},{},{} --samples {}:1 -o sample.pfm", sample.x, sample.y,
                                sample.x + 1, sample.y + 1, sample.sample);
 }

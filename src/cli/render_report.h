@@ -6,15 +6,9 @@
 
 #include "castray/image.h"
 #include "castray/render.h"
-#include "cli/render_flags.h"
+#include "cli/given_flag.h"
 
 namespace castray::cli {
-
-/// A flag as given on the command line.
-struct GivenFlag {
-  const RenderFlag* flag;
-  std::string value;
-};
 
 /// What is told about a render, to people (on stderr) and to programs.
 struct RenderReport {

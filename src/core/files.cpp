@@ -181,12 +181,22 @@ std::string suffix_of(const fs::path& file) {
   return suffix;
 }
 
-std::string read_file(const fs::path& file) {
+namespace {
+
+std::ifstream open_to_read(const fs::path& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) fail(file, "is a folder; give a file");
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   if (!in) fail(file, errno == ENOENT ? "does not exist" : "cannot be read: " + reason(errno));
+  return in;
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file) {
+  std::ifstream in = open_to_read(file);
+  std::error_code ignored;
   const std::uintmax_t length = fs::is_regular_file(file, ignored) ? fs::file_size(file, ignored) : 0;
   if (length > memory_size()) fail(file, "is longer than this machine's memory");
   std::string bytes;
@@ -198,6 +208,16 @@ std::string read_file(const fs::path& file) {
   }
   if (in.bad()) fail(file, "cannot be read: " + reason(errno));
   return bytes;
+}
+
+std::string read_head(const fs::path& file, std::size_t at_least, char end) {
+  std::ifstream in = open_to_read(file);
+  std::string head(at_least, '\0'), rest;
+  in.read(head.data(), static_cast<std::streamsize>(at_least));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  if (in && std::getline(in, rest, end)) head += rest + (in.eof() ? "" : std::string(1, end));
+  if (in.bad()) fail(file, "cannot be read: " + reason(errno));
+  return head;
 }
 
 bool is_standard_output(const fs::path& file) {

@@ -14,6 +14,10 @@ std::string suffix_of(const std::filesystem::path& file);
 /// All bytes of a file. Throws InputError that says why it cannot be read.
 std::string read_file(const std::filesystem::path& file);
 
+/// The first bytes of a file, up to the `end` that is the first at or behind `at_least`, or all of them.
+/// Throws InputError that says why it cannot be read.
+std::string read_head(const std::filesystem::path& file, std::size_t at_least, char end);
+
 /// Whether a file's name stands for the standard output: "-", "/dev/stdout", or "FORMAT:-", as in "exr:-".
 bool is_standard_output(const std::filesystem::path& file);
 

@@ -146,44 +146,74 @@ std::vector<Vec3d> Film::replicate_means(const Blocks& wanted) const {
   return means;
 }
 
-void Film::require_same_render(const Film& other) const {
-  if (key != other.key)
-    throw InputError("the films are of different renders: " + difference_of_keys(key, other.key));
-  if (version != other.version)
-    throw InputError(
-        fmt::format("the films are of different versions of castray: {} and {}", version, other.version));
-  if (window_ != other.window_)
-    throw InputError("the films show different windows: " + to_string(window_) + " and " +
-                     to_string(other.window_));
-  if (scale_ != other.scale_)
-    throw InputError(
-        fmt::format("the films are of scenes of different brightness: {} and {}", scale_, other.scale_));
-  if (keeps_replicates() != other.keeps_replicates())
-    throw InputError(
-        "one film keeps replicates and the other does not; render both with --replicates, or none");
+Film Film::without_samples(const Window& window) const {
+  Film film(window, scale_);
+  film.key = key;
+  film.version = version;
+  film.planned = planned;
+  return film;
+}
+
+std::string Film::difference_from(const Film& other) const {
+  if (key != other.key) return difference_of_keys(key, other.key);
+  if (version != other.version) return "castray " + version + " against castray " + other.version;
+  if (scale_ != other.scale_) return fmt::format("lights of radiance {} against {}", scale_, other.scale_);
+  if (keeps_replicates() == other.keeps_replicates()) return {};
+  return keeps_replicates() ? "one film keeps replicates against none" : "no replicates against some";
 }
 
 void Film::merge(const Film& other) {
-  require_same_render(other);
+  if (const std::string difference = difference_from(other); !difference.empty())
+    throw InputError("the films are of different renders: " + difference);
+  if (window_ != other.window_)
+    throw InputError("the films show different windows: " + to_string(window_) + " and " +
+                     to_string(other.window_));
   samples = joined_ranges(samples, other.samples);
-  for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other.sums_[i];
-  for (const Replicate& theirs : other.replicates_) {
-    const auto ours = std::lower_bound(replicates_.begin(), replicates_.end(), theirs.index,
-                                       [](const Replicate& r, std::uint64_t i) { return r.index < i; });
-    if (ours == replicates_.end() || ours->index != theirs.index) {
-      replicates_.insert(ours, theirs);
-      continue;
-    }
-    for (std::size_t i = 0; i < ours->sums.size(); ++i) ours->sums[i] += theirs.sums[i];
-    for (std::size_t i = 0; i < ours->counts.size(); ++i) ours->counts[i] += theirs.counts[i];
+  add(other);
+}
+
+void Film::add(const Film& other) {
+  const Window& w = other.window_;
+  const auto columns = static_cast<std::size_t>(w.width());
+  for (int y = w.y0; y < w.y1; ++y) {
+    const std::size_t to = index(w.x0, y), from = other.index(w.x0, y);
+    for (std::size_t i = 0; i < 3 * columns; ++i) sums_[3 * to + i] += other.sums_[3 * from + i];
+    for (std::size_t i = 0; i < columns; ++i) counts_[to + i] += other.counts_[from + i];
   }
-  for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += other.counts_[i];
+  for (const Replicate& theirs : other.replicates_) add(theirs, other.blocks());
   nonfinite_samples += other.nonfinite_samples;
+}
+
+void Film::add(const Replicate& theirs, const Blocks& their_blocks) {
+  const Blocks all = blocks();
+  const auto columns = static_cast<std::size_t>(all.x1 - all.x0),
+             rows = static_cast<std::size_t>(all.y1 - all.y0);
+  auto ours = std::lower_bound(replicates_.begin(), replicates_.end(), theirs.index,
+                               [](const Replicate& r, std::uint64_t i) { return r.index < i; });
+  if (ours == replicates_.end() || ours->index != theirs.index)
+    ours = replicates_.insert(ours, {theirs.index, std::vector<Sum>(3 * columns * rows),
+                                     std::vector<std::uint64_t>(columns * rows)});
+  std::size_t from = 0;
+  for (int y = their_blocks.y0; y < their_blocks.y1; ++y)
+    for (int x = their_blocks.x0; x < their_blocks.x1; ++x, ++from) {
+      const std::size_t to =
+          static_cast<std::size_t>(y - all.y0) * columns + static_cast<std::size_t>(x - all.x0);
+      for (std::size_t c = 0; c < 3; ++c) ours->sums[3 * to + c] += theirs.sums[3 * from + c];
+      ours->counts[to] += theirs.counts[from];
+    }
 }
 
 double Film::samples_per_pixel() const {
   const std::uint64_t counted = std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
   return static_cast<double>(counted + nonfinite_samples) / static_cast<double>(counts_.size());
+}
+
+std::uint64_t Film::missing_samples() const {
+  std::uint64_t wanted = 0;
+  for (const SampleRange& range : samples) wanted += range.count;
+  const std::uint64_t taken =
+      std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}) + nonfinite_samples;
+  return wanted * counts_.size() - std::min(taken, wanted * counts_.size());
 }
 
 std::string samples_text(double samples_per_pixel) {

@@ -39,13 +39,15 @@ struct FilmFile {
     for (const SampleRange& range : film.samples) ranges.push_back({range.first, range.count});
     for (const Film::Replicate& replicate : film.replicates_) replicates.push_back(replicate.index);
     const Window& w = film.window_;
-    const json header{{"window", {w.full_width, w.full_height, w.x0, w.y0, w.x1, w.y1}},
-                      {"scale", film.scale_},
-                      {"samples", ranges},
-                      {"replicates", replicates},
-                      {"key", film.key},
-                      {"nonfinite_samples", film.nonfinite_samples},
-                      {"version", film.version}};
+    json header{{"window", {w.full_width, w.full_height, w.x0, w.y0, w.x1, w.y1}},
+                {"scale", film.scale_},
+                {"samples", ranges},
+                {"replicates", replicates},
+                {"key", film.key},
+                {"nonfinite_samples", film.nonfinite_samples},
+                {"version", film.version}};
+    if (film.planned && film.samples != std::vector{*film.planned})
+      header["planned"] = {film.planned->first, film.planned->count};
     std::string bytes =
         std::string(magic) + header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
     append_sums(bytes, film.sums_);
@@ -58,18 +60,24 @@ struct FilmFile {
     return bytes;
   }
 
+  /// The head of `bytes`: the film without its sums, and where they begin.
+  static Film parse_head(const std::string& name, std::string_view bytes, std::size_t& data_begin) {
+    if (!bytes.starts_with(magic)) throw InputError({name}, "is not a film of castray (format 1)");
+    const std::size_t header_end = bytes.find('\n', magic.size());
+    if (header_end == std::string_view::npos) throw InputError({name}, "is truncated");
+    data_begin = header_end + 1;
+    try {
+      return parse_header(json::parse(bytes.substr(magic.size(), header_end - magic.size())));
+    } catch (const json::exception& error) {
+      throw InputError({name}, std::string("has a corrupt header: ") + error.what());
+    }
+  }
+
   static Film parse(const std::string& name, std::string_view bytes) {
     const auto fail = [&](const std::string& what) { throw InputError({name}, what); };
-    if (!bytes.starts_with(magic)) fail("is not a film of castray (format 1)");
-    const std::size_t header_end = bytes.find('\n', magic.size());
-    if (header_end == std::string_view::npos) fail("is truncated");
-    Film film;
-    try {
-      film = parse_header(json::parse(bytes.substr(magic.size(), header_end - magic.size())));
-    } catch (const json::exception& error) {
-      fail(std::string("has a corrupt header: ") + error.what());
-    }
-    const std::string_view data = bytes.substr(header_end + 1);
+    std::size_t data_begin = 0;
+    Film film = parse_head(name, bytes, data_begin);
+    const std::string_view data = bytes.substr(data_begin);
     const auto pixels = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
     const Film::Blocks grid = film.blocks();
     const auto blocks =
@@ -122,6 +130,12 @@ struct FilmFile {
     return value.get<std::uint64_t>();
   }
 
+  static SampleRange range_of(const json& item) {
+    const SampleRange range{whole(item.at(0)), whole(item.at(1))};
+    demand(range.count > 0 && range.first + range.count > range.first, "bad sample ranges");
+    return range;
+  }
+
   /// A film without its sums. Throws json::exception also where a value is out of range.
   static Film parse_header(const json& header) {
     Film film;
@@ -142,12 +156,13 @@ struct FilmFile {
       demand(n == 1 || film.replicates_[n - 2].index < film.replicates_[n - 1].index, "bad replicates");
     }
     std::uint64_t end = 0;
-    for (const json& range : header.at("samples")) {
-      const std::uint64_t first = whole(range.at(0)), count = whole(range.at(1));
-      demand(first >= end && count > 0 && first + count > first, "bad sample ranges");
-      film.samples.push_back({first, count});
-      end = first + count;
+    for (const json& item : header.at("samples")) {
+      const SampleRange range = range_of(item);
+      demand(range.first >= end, "bad sample ranges");
+      film.samples.push_back(range);
+      end = range.first + range.count;
     }
+    if (header.contains("planned")) film.planned = range_of(header["planned"]);
     return film;
   }
 };
@@ -157,6 +172,12 @@ Film parse_film(const std::string& name, std::string_view bytes) { return FilmFi
 Film read_film(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   return parse_film(file.string(), bytes);
+}
+
+Film read_film_header(const std::filesystem::path& file) {
+  const std::string head = read_head(file, magic.size(), '\n');
+  std::size_t data_begin = 0;
+  return FilmFile::parse_head(file.string(), head, data_begin);
 }
 
 void write_film(const std::filesystem::path& file, const Film& film, const Display& display,

@@ -107,6 +107,7 @@ class RowLoop {
         pace_(static_cast<std::uint64_t>(window_.width()) * static_cast<std::uint64_t>(window_.height())) {
     result_.film = Film(window_, job.brightest);
     result_.film.key = job.key;
+    result_.film.planned = job.options.planned;
     finished_.resize(static_cast<std::size_t>(window_.height()));
     if (start) resume(*start);
     result_.stats.threads = job.threads;
@@ -136,23 +137,25 @@ class RowLoop {
  private:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
-  /// Throws InputError that says how `start` differs from the film of this render.
-  void require_resumable(const Film& start) const {
-    result_.film.require_same_render(start);
+  /// How `start` differs from a film that this render may continue; empty if it does not.
+  std::string difference_to_resume(const Film& start) const {
+    if (const std::string difference = start.difference_from(result_.film); !difference.empty())
+      return difference;
+    if (start.window() != window_) return "another crop";
     for (const SampleRange& have : start.samples)
       if (have.first != samples_.first || have.count > samples_.count)
-        throw InputError(fmt::format("it holds samples {}:{}, this render is of {}:{}", have.first,
-                                     have.count, samples_.first, samples_.count));
+        return fmt::format("its samples are {}:{}, and {}:{} are asked for", have.first, have.count,
+                           samples_.first, samples_.count);
+    return {};
   }
 
   void resume(const Film& start) {
-    try {
-      require_resumable(start);
-    } catch (const InputError& error) {
-      throw InputError(std::string("the film to resume is of another render: ") + error.what() +
-                       "; give the options that it has, or leave it out");
-    }
+    if (const std::string difference = difference_to_resume(start); !difference.empty())
+      throw InputError("the film to resume is of another render: " + difference +
+                       "; remove it or give the same options");
+    const auto planned = result_.film.planned;
     result_.film = start;
+    result_.film.planned = planned;
     finished_ = finished_samples(start);
   }
 

@@ -139,19 +139,19 @@ TEST_CASE("a checkpoint of another scene, other options, version or samples is r
     CHECK_THAT(result.err, Contains("another render") && Contains(difference));
     CHECK(read_file(folder / "c.film") == before);
   };
-  refused({"--spp", "8", "--resume", "--seed", "3"}, "seed=3 against seed=0");
-  refused({"--spp", "8", "--resume", "--max-depth", "2"}, "max-depth=2 against max-depth=0");
-  refused({"--spp", "8", "--resume", "--crop", "0,0,8,8"}, "different windows: 0,0,8,8 of 48x48");
-  refused({"--spp", "3", "--resume"}, "it holds samples 0:4, this render is of 0:3");
-  refused({"--samples", "4:4", "--resume"}, "it holds samples 0:4, this render is of 4:4");
+  refused({"--spp", "8", "--resume", "--seed", "3"}, "seed=0 against seed=3");
+  refused({"--spp", "8", "--resume", "--max-depth", "2"}, "max-depth=none against max-depth=2");
+  refused({"--spp", "8", "--resume", "--crop", "0,0,8,8"}, "another crop");
+  refused({"--spp", "3", "--resume"}, "its samples are 0:4, and 0:3 are asked for");
+  refused({"--samples", "4:4", "--resume"}, "its samples are 0:4, and 4:4 are asked for");
   const RunResult other = run_castray({"render", CASTRAY_ROOT "/scenes/furnace.json", "--size", "48x48",
                                        "--checkpoint", "c.film", "--resume"},
                                       folder.path());
   CHECK(other.exit_code == 2);
-  CHECK_THAT(other.err, Contains("scene=furnace, hash=") && Contains("against scene=cornell_box, hash="));
+  CHECK_THAT(other.err, Contains("scene=cornell_box, hash=") && Contains("against scene=furnace, hash="));
 
   Film film = read_film(folder / "c.film");
   const std::string own = std::exchange(film.version, "0.0.1");
   write_film(folder / "c.film", film);
-  refused({"--spp", "8", "--resume"}, "different versions of castray: " + own + " and 0.0.1");
+  refused({"--spp", "8", "--resume"}, "castray 0.0.1 against castray " + own);
 }

@@ -25,7 +25,7 @@ const std::string whole = "must be a whole number between ";
 
 const std::vector<Case> cases = {
     {{},
-     "say what to do: render, compare, accept, bench, info, merge, convert, completions; see castray --help"},
+     "say what to do: render, compare, accept, bench, info, merge, submit, convert, completions; see castray --help"},
     {{"rendr"}, "unknown subcommand 'rendr'; did you mean 'render'?"},
     {{"--versio"}, "unknown flag '--versio'; did you mean '--version'?"},
     {{"info", "--jsn", "s.json"}, "unknown flag '--jsn'; see castray info --help"},

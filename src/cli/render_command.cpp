@@ -1,0 +1,94 @@
+#include "cli/render_command.h"
+
+#include <algorithm>
+
+#include "castray/error.h"
+#include "cli/display_flags.h"
+#include "cli/shell_word.h"
+#include "core/files.h"
+
+namespace castray::cli {
+
+namespace fs = std::filesystem;
+
+void declare_flags(Arguments& arguments, RenderCommand& command) {
+  arguments.add_positional("SCENE", command.scene, "scene .json, or .obj; - is a scene on the standard input")
+      .required();
+  for (const RenderFlag& flag : render_flags())
+    arguments
+        .add_text((flag.letter ? std::string{'-', flag.letter, ','} : "") + "--" + flag.name, flag.metavar,
+                  flag.help,
+                  [&command, &flag](const std::string& value) {
+                    command.given.push_back({&flag, value});
+                  })
+        .group(flag.group);
+  arguments
+      .add("-o,--output", command.outputs, "FILE",
+           "image or film, repeatable; .ppm .png .pfm .hdr .exr .film [SCENE.png here]")
+      .group("Output");
+}
+
+bool RenderCommand::is_given(std::string_view flag) const {
+  return std::any_of(given.begin(), given.end(),
+                     [&](const GivenFlag& one) { return one.flag->name == flag; });
+}
+
+namespace {
+
+/// The samples of the part, and its number in the names of files.
+void take_part(RenderRequest& request) {
+  RenderOptions& options = request.options;
+  if (options.target_error)
+    throw InputError("--part: cannot go with --target-error, which decides the samples; leave one out");
+  const SampleRange all = options.samples.value_or(
+      SampleRange{0, request.replicates ? options.spp / request.replicates : options.spp});
+  options.samples = range_of(*request.part, all);
+  if (!options.time_limit && !request.replicates) options.planned = all;
+  const auto rename = [&](std::filesystem::path& file) { file = name_of(*request.part, file); };
+  std::for_each(request.outputs.begin(), request.outputs.end(), rename);
+  if (request.checkpoint) rename(*request.checkpoint);
+  if (request.stats) rename(*request.stats);
+}
+
+}  // namespace
+
+RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene) {
+  RenderRequest request;
+  apply_defaults(request, scene);
+  for (const GivenFlag& given : command.given) given.flag->set(request, given.flag->name, given.value);
+  const bool spp_limits = command.is_given("spp") || request.options.samples;
+  if (request.options.target_error && !spp_limits) request.options.spp = most_samples_to_target;
+  request.until_time_limit = request.options.time_limit && !request.options.target_error && !spp_limits;
+  if (request.until_time_limit) request.options.spp = most_samples;
+  request.outputs.assign(command.outputs.begin(), command.outputs.end());
+  if (request.outputs.empty()) request.outputs.push_back(scene.name + ".png");
+  if (request.part) take_part(request);
+  request.quiet = common.quiet;
+  request.verbose = common.verbose;
+  return request;
+}
+
+/// All that could spoil the result is found before the work starts.
+void check(const RenderRequest& request) {
+  if (request.resume && !request.checkpoint)
+    throw InputError("--resume: needs --checkpoint FILE to resume from");
+  if (request.replicates && (request.checkpoint || request.preview_seconds || request.options.time_limit ||
+                             request.options.target_error))
+    throw InputError(
+        "--replicates: cannot go with --checkpoint, --preview-every, --time-limit or --target-error; leave "
+        "one out");
+  if (request.checkpoint && request.options.target_error)
+    throw InputError("--target-error: cannot go with --checkpoint; leave one out");
+  for (const fs::path& output : request.outputs) check_output_image(output);
+  std::vector<fs::path> all = request.outputs;
+  if (request.stats) all.push_back(*request.stats);
+  check_one_standard_output(all);
+  if (request.stats) check_writable(*request.stats);
+}
+
+std::string GivenFlag::text() const {
+  const std::string name = std::string(" --") + flag->name;
+  return flag->metavar ? name + " " + shell_word(value) : name;
+}
+
+}  // namespace castray::cli

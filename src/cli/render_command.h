@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/arguments.h"
+#include "cli/common_flags.h"
+#include "cli/given_flag.h"
+#include "cli/render_flags.h"
+
+namespace castray::cli {
+
+/// What a command line says of a render, as text: values are read after the scene's own defaults.
+struct RenderCommand {
+  std::string scene;
+  std::vector<std::string> outputs;
+  std::vector<GivenFlag> given;
+
+  bool is_given(std::string_view flag) const;
+};
+
+/// Declares SCENE, all flags of `castray render`, and -o.
+void declare_flags(Arguments& arguments, RenderCommand& command);
+
+/// Throws InputError where a value cannot be, also one of the scene's own defaults.
+RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene);
+
+/// Finds what could spoil the result before the work starts. Throws InputError.
+void check(const RenderRequest& request);
+
+}  // namespace castray::cli
