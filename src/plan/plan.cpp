@@ -77,7 +77,9 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
 }
 
 void choose_by_pilot(Plan& plan, double gain_of_sharing) {
-  if (gain_of_sharing < 1) plan.suffixes = 0;
+  // More samples than the pilot's few favour plain paths, which are stratified over all samples of a pixel.
+  constexpr double worth_sharing = 1.5;
+  if (gain_of_sharing < worth_sharing) plan.suffixes = 0;
   plan.kernel = fmt::format("{} (by a pilot, sharing is {:.2g} times as efficient as plain paths)",
                             kernel_name(plan), gain_of_sharing);
 }

@@ -10,8 +10,8 @@ struct Context {
   const KernelOptions& options;
   const TileJob& job;
   const FarEnds& ends;
-  uint32_t world;  ///< of PartialTriangles: one for each sample of the image
-  uint64_t rays = 0;
+  uint32_t world;                                  ///< of PartialTriangles: one for each sample of the image
+  uint64_t rays = 0, gathered = 0, evaluated = 0;  ///< as in TileResult
 };
 
 template <class Geometry>

@@ -80,6 +80,7 @@ CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxe
           emitted * (bsdf_share(Float(suffixes.light_density[entry]), Float(density)) * Float(1.f / density));
       if constexpr (features & feature_materials) {
         if (glossy) {
+          c.evaluated += 2 * tile_pixels;
           add_glossy<features>(c.scene, suffixes, suffix, gatherers, t, lit * Float(1.f / density),
                                reflected * Float(stratum), emission, gathered);
           continue;

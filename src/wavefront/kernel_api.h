@@ -60,12 +60,13 @@ inline constexpr int batch_size = tile_pixels * max_tiles;
 /// How far outside its tile a pixel of a ragged tile lies at most.
 inline constexpr int ragged_reach = tile_size / 2;
 
-/// Result of a job: positions in the full image, and radiance, of pixel i of tile k at 64 k + i; rays
-/// traced.
+/// Result of a job: positions in the full image, and radiance, of pixel i of tile k at 64 k + i. `rays` grows
+/// by the visibilities found, traced or gathered, `gathered` by those that pixels gathered from what a tile
+/// shares, `evaluated` by the BSDFs other than Lambert's that this took.
 struct TileResult {
   uint32_t *x, *y;  ///< as signed numbers, for pixels left of or above the image
   float* radiance[3];
-  uint64_t rays;
+  uint64_t rays, gathered, evaluated;
 };
 
 using RenderTiles = void (*)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,

@@ -13,7 +13,8 @@ using RenderJob = std::function<void(const KernelOptions&, const TileJob&, TileR
 /// Efficiency, 1 / (error x cost), of shared paths over that of plain ones, by a pilot: both render the same
 /// few tiles, some samples in each of some independent replicates. Error is the variance of a pixel's mean
 /// over replicates, relative as relMSE is, without what the camera sees of emitters: that is noise of both
-/// alike. Cost is counted in rays. None if the image is too small to spare a pilot, or if no light was found.
+/// alike. Cost is counted in rays, of which what pixels gather is a fraction. None if the image is too small
+/// to spare a pilot, or if no light was found.
 ///
 /// A function of the scene, the image's full size and `shared` but its seed: never of time, threads, or the
 /// part of the image or of its samples that is wanted. So parts of one image agree. None of the pilot's

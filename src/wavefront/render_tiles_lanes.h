@@ -35,6 +35,8 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
     result.radiance[2][i] = s.radiance.z[i];
   }
   result.rays += c.rays;
+  result.gathered += c.gathered;
+  result.evaluated += c.evaluated;
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -41,8 +41,9 @@ CASTRAY_INLINE Mask by_bsdf(const Context& c, const Gatherers& tile, int entry, 
 /// Replaces vector i of a transfer, in `lanes`, by what the BSDF says about direction wi. `geometry` turns
 /// densities of directions into those of the sender.
 template <uint32_t features>
-CASTRAY_INLINE void transfer_by_bsdf(const Context& c, const Gatherers& tile, int i, Mask lanes,
-                                     const Vec& wi, Float geometry, Transfer& t) {
+CASTRAY_INLINE void transfer_by_bsdf(Context& c, const Gatherers& tile, int i, Mask lanes, const Vec& wi,
+                                     Float geometry, Transfer& t) {
+  c.evaluated += (uint64_t)count(lanes);
   const int entry = tile.first + i * width;
   const Shading shading = shading_of<features>(c.scene, tile.x, entry);
   const Vec local = to_local(shading.frame, wi);
@@ -54,8 +55,7 @@ CASTRAY_INLINE void transfer_by_bsdf(const Context& c, const Gatherers& tile, in
 
 /// Transfer without visibility.
 template <uint32_t features>
-CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const Gatherers& tile,
-                                        Transfer& t) {
+CASTRAY_INLINE void unoccluded_transfer(Context& c, const Sender& y, const Gatherers& tile, Transfer& t) {
   for (int i = 0; i < tile_vectors; ++i) {
     const int entry = tile.first + i * width;
     const Vec d = load(tile.x.p, entry) - y.p, normal = load(tile.x.normal, entry);
@@ -73,8 +73,7 @@ CASTRAY_INLINE void unoccluded_transfer(const Context& c, const Sender& y, const
 }
 
 template <uint32_t features>
-CASTRAY_INLINE void unoccluded_transfer(const Context& c, const FarSender& y, const Gatherers& tile,
-                                        Transfer& t) {
+CASTRAY_INLINE void unoccluded_transfer(Context& c, const FarSender& y, const Gatherers& tile, Transfer& t) {
   for (int i = 0; i < tile_vectors; ++i) {
     const int entry = tile.first + i * width;
     const Vec normal = load(tile.x.normal, entry);

@@ -95,6 +95,7 @@ CASTRAY_STAGE void transfer(Context& c, const AnySender& y, Gatherers& tile, Vis
   unoccluded_transfer<features>(c, y, tile, t);
   hide_blocked<Geometry, features>(c, y, tile, s, t);
   c.rays += tile_pixels;
+  c.gathered += tile_pixels;
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -42,7 +42,7 @@ struct Workplace {
   }
   TileResult result() {
     return {
-        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0};
+        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0, 0};
   }
 };
 

@@ -24,7 +24,7 @@ float noise(std::uint32_t seed, const TileJob& job, std::uint32_t pixel, std::ui
 
 /// A renderer whose pixels are 1 + what is seen of emitters, and noise of the given greatest size.
 RenderJob pretended(float shared_noise, float plain_noise, float emitted, std::uint64_t shared_rays,
-                    std::uint64_t plain_rays) {
+                    std::uint64_t plain_rays, std::uint64_t gathered = 0, std::uint64_t evaluated = 0) {
   return [=](const KernelOptions& options, const TileJob& job, TileResult& result) {
     const bool seen_only = options.max_depth == 1, shared = options.suffixes > 0;
     for (std::uint32_t i = 0; i < tile_pixels; ++i)
@@ -34,7 +34,9 @@ RenderJob pretended(float shared_noise, float plain_noise, float emitted, std::u
         result.radiance[c][i] =
             seen + (seen_only ? 0 : 1 + size * noise(options.seed, job, i, shared ? c : 3 + c));
       }
-    result.rays += shared ? shared_rays : plain_rays;
+    result.rays += shared ? shared_rays + gathered : plain_rays;
+    result.gathered += shared ? gathered : 0;
+    result.evaluated += shared ? evaluated : 0;
   };
 }
 
@@ -50,10 +52,20 @@ KernelOptions sharing() {
 TEST_CASE("the pilot's gain of sharing is the ratio of variances times that of costs") {
   // 32 tiles of 64 pixels with 3 channels and 2 degrees of freedom: a variance is known to 1.3 %
   for (const float ratio : {0.5f, 1.f, 2.f}) {
-    const auto gain = gain_of_sharing(sharing(), 512, 512, 1, pretended(0.1f, 0.1f * ratio, 0, 4000, 500));
+    const auto gain = gain_of_sharing(sharing(), 512, 512, 1, pretended(0.1f, 0.1f * ratio, 0, 2000, 500));
     REQUIRE(gain);
-    CHECK(*gain == Approx(ratio * ratio * 500 / (4000 * 0.25)).epsilon(0.08));
+    CHECK(*gain == Approx(ratio * ratio * 500 / 2000).epsilon(0.08));
   }
+}
+
+TEST_CASE("to the pilot, what pixels gather costs less than rays, and BSDFs to evaluate cost something") {
+  const auto gain = [](std::uint64_t rays, std::uint64_t gathered, std::uint64_t evaluated) {
+    return *gain_of_sharing(sharing(), 256, 256, 1,
+                            pretended(0.1f, 0.2f, 0, rays, 1000, gathered, evaluated));
+  };
+  CHECK(gain(1000, 4000, 0) < 0.75 * gain(1000, 0, 0));
+  CHECK(gain(1000, 4000, 0) > 2 * gain(5000, 0, 0));
+  CHECK(gain(1000, 4000, 4000) < 0.95 * gain(1000, 4000, 0));
 }
 
 TEST_CASE("what the camera sees of emitters does not count in the pilot, nor does what is not finite") {
