@@ -12,14 +12,14 @@ struct Light {
   Vec origin, edge1, edge2, normal, emission;
   Float area, error, density;
   Mask triangle, two_sided, rectangle;
-  Uint material, source;
+  Uint material, source, node;
 };
 CASTRAY_INLINE Light broadcast(const KernelLight& l) {
   const auto flag = [](uint32_t v) { return Uint(v) == Uint(1u); };
   return {broadcast(l.origin),   broadcast(l.edge1), broadcast(l.edge2), broadcast(l.normal),
           broadcast(l.emission), Float(l.area),      Float(l.error),     Float(l.density),
           flag(l.triangle),      flag(l.two_sided),  flag(l.rectangle),  Uint(l.material),
-          Uint(l.source)};
+          Uint(l.source),        Uint(l.node)};
 }
 CASTRAY_INLINE Light light_of(const LightList& list, Uint light) {
   if (list.count == 1) return broadcast(*list.lights);
@@ -29,10 +29,13 @@ CASTRAY_INLINE Light light_of(const LightList& list, Uint light) {
   const auto number = [&](float L::*field) { return gather(list.lights, field, record); };
   const auto integer = [&](uint32_t L::*field) { return gather(list.lights, field, record); };
   const auto flag = [&](uint32_t L::*field) { return integer(field) == Uint(1u); };
-  return {vec(&L::origin),    vec(&L::edge1),      vec(&L::edge2),      vec(&L::normal),
-          vec(&L::emission),  number(&L::area),    number(&L::error),   number(&L::density),
-          flag(&L::triangle), flag(&L::two_sided), flag(&L::rectangle), integer(&L::material),
-          integer(&L::source)};
+  return {vec(&L::origin),     vec(&L::edge1),
+          vec(&L::edge2),      vec(&L::normal),
+          vec(&L::emission),   number(&L::area),
+          number(&L::error),   number(&L::density),
+          flag(&L::triangle),  flag(&L::two_sided),
+          flag(&L::rectangle), integer(&L::material),
+          integer(&L::source), list.regions.tree ? integer(&L::node) : Uint(0u)};
 }
 
 /// A point on the chosen light, uniform in area or, where asked for and possible, in solid angle.
@@ -56,8 +59,8 @@ CASTRAY_INLINE LightPoint sample_area_light(const LightList& list, const LightCh
   if (list.materials)
     resolve_emission(*list.materials, *list.triangles, light.material * uint32_t{material_floats},
                      {light.source, a, b}, emission);
-  return {p,           light.normal, emission * inverse_density, light.density, light.two_sided,
-          light.error, Mask(false)};
+  return {p,           light.normal, emission * inverse_density, light.density, light.two_sided, light.error,
+          Mask(false), light.node};
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -1,10 +1,11 @@
 #pragma once
 
-#include "lights/light_records.h"
+#include "lights/light_regions_lanes.h"
 #include "simd/vec_lanes.h"
 
 // The choice of a light by what it may bring to a point: Conty Estevez and Kulla 2018, "Importance Sampling
-// of Many Lights with Adaptive Tree Splitting", section 3, without splitting.
+// of Many Lights with Adaptive Tree Splitting", section 3, without splitting; and by what was learned of
+// which lights are seen.
 
 namespace castray::CASTRAY_ISA {
 
@@ -14,9 +15,18 @@ struct Receiver {
   Vec p, normal;
   Float radius, cos_spread, sin_spread;
   Mask one_sided;
+  const float* seen;  ///< from seen[row] on: what is seen of the cut's nodes; null: not known
+  Uint row;
 };
-CASTRAY_INLINE Receiver receiving_point(Vec p, Vec normal, Mask one_sided) {
-  return {p, normal, Float(0.f), Float(1.f), Float(0.f), one_sided};
+CASTRAY_INLINE Receiver receiving_point(const LightRegions& regions, Vec p, Vec normal, Mask one_sided) {
+  return {p,
+          normal,
+          Float(0.f),
+          Float(1.f),
+          Float(0.f),
+          one_sided,
+          regions.seen,
+          regions.tree ? row_at(regions, fma(normal, Float(light_front), p)) : Uint(0u)};
 }
 
 /// A chosen light's number, and its probability; 0 if no light reaches the receiver.
@@ -69,11 +79,44 @@ struct Choice {
   Float probability, u;
 };
 
-/// Chooses a node of the cut, by the importance of every node.
+/// What the cut's nodes are chosen in proportion to, and its sum.
+struct CutWeights {
+  Float of[most_light_cut], sum;
+};
+
+/// Weights for the receiver by importance alone, mixed with such by importance times what is seen of the
+/// node. Where importance is not 0, nor is the weight.
+CASTRAY_INLINE void mix_in_seen(uint32_t nodes, const Receiver& r, CutWeights& weights) {
+  Float seen[most_light_cut], sum(0.f);
+  for (uint32_t i = 0; i < nodes; ++i) {
+    seen[i] = gather(r.seen, r.row + i);
+    sum = sum + weights.of[i] * seen[i];
+  }
+  const Mask known = (sum > Float(0.f)) & (weights.sum > Float(0.f));
+  const Float learned = select(known, Float(learned_share) / sum, Float(0.f));
+  const Float by_bounds = select(known, Float(1 - learned_share) / weights.sum, Float(1.f));
+  weights.sum = Float(0.f);
+  for (uint32_t i = 0; i < nodes; ++i) {
+    weights.of[i] = weights.of[i] * fma(seen[i], learned, by_bounds);
+    weights.sum = weights.sum + weights.of[i];
+  }
+}
+
+CASTRAY_INLINE void weigh_cut(const LightList& list, const Receiver& r, CutWeights& weights) {
+  weights.sum = Float(0.f);
+  for (uint32_t i = 0; i < list.cut_count; ++i) {
+    weights.of[i] = importance(broadcast(list.cut[i]), r);
+    weights.sum = weights.sum + weights.of[i];
+  }
+  if (r.seen) mix_in_seen(list.cut_count, r, weights);
+}
+
+/// Chooses a node of the cut.
 CASTRAY_INLINE Choice choose_in_cut(const LightList& list, Float u, const Receiver& r) {
-  Float upto[most_light_cut];
-  Float sum(0.f);
-  for (uint32_t i = 0; i < list.cut_count; ++i) upto[i] = sum = sum + importance(broadcast(list.cut[i]), r);
+  CutWeights weights;
+  weigh_cut(list, r, weights);
+  Float upto[most_light_cut], sum(0.f);
+  for (uint32_t i = 0; i < list.cut_count; ++i) upto[i] = sum = sum + weights.of[i];
   const Float at = u * sum;
   Uint next(list.cut[0].next);
   Float before(0.f), after = upto[0];

@@ -10,11 +10,12 @@ struct LightPoint {
   Vec p;  ///< for a point at infinity: the unit direction to it
   Vec normal;
   Vec weight;     ///< emitted radiance over the pdf of the sample
-  Float density;  ///< pdf that MIS weights take for it: power-proportional, even where importance chose the
-                  ///< light
+  Float density;  ///< pdf that MIS weights take for it, times what LightRegions know: power-proportional,
+                  ///< even where importance chose the light
   Mask two_sided;
   Float error;    ///< bound of the distance of p from the exact light
   Mask infinite;  ///< at infinity: `normal`, `two_sided` and `error` have no meaning
+  Uint node;      ///< of the light tree's cut, for relative_density; where LightRegions are known
 };
 
 /// The segment from the surface point p to a light point.

@@ -23,6 +23,7 @@ struct KernelLight {
   float probability;   ///< of this light, chosen by power
   float cumulative;    ///< sum of the probabilities before this one
   uint32_t rectangle;  ///< 1: its edges are perpendicular
+  uint32_t node;       ///< of the light tree's cut, for MIS weights; where LightRegions are known
 };
 inline constexpr int light_floats = sizeof(KernelLight) / sizeof(float);
 
@@ -39,6 +40,31 @@ inline constexpr uint32_t light_leaf = 0x80000000u;
 
 /// Most nodes of the cut, whose importances are all computed before the descent.
 inline constexpr int most_light_cut = 32;
+
+/// A region of space, or a plane that parts it in two. `link`: the axis of the plane + 4 times the first of
+/// two children, which are side by side; the second holds the places with coordinates from `plane` on. Or
+/// region_leaf + 4 times the region's number.
+struct RegionNode {
+  float plane;
+  uint32_t link;
+};
+inline constexpr uint32_t region_leaf = 3;
+
+/// The region of a surface point is that of the place this far in front of it. It keeps the two sides of a
+/// thin wall apart.
+inline constexpr float light_front = 0x1p-7f;
+
+/// What share of light samples is chosen by what is seen from the region; the others by bounds alone.
+inline constexpr float learned_share = 0.875f;
+
+/// What was learned about the nodes of the cut in regions of space. Tables have rows of most_light_cut.
+struct LightRegions {
+  const RegionNode* tree;  ///< the root first; null: nothing is known
+  const float* seen;       ///< by region and node: 0 if the node is never seen, up to 1
+  const float* density;    ///< by region and node: pdf of light samples over that of power-proportional ones
+  const float* inverse_power;         ///< by node: 1 over its share of all power
+  const uint32_t* node_of_primitive;  ///< of facets or triangles that emit
+};
 
 struct MaterialTables;
 struct TriangleTable;
@@ -57,6 +83,16 @@ struct LightList {
                         ///< light
   const MaterialTables* materials;  ///< where an image says what some light emits; else null
   const TriangleTable* triangles;   ///< likewise
+  LightRegions regions;
+};
+
+/// Choices of a light for one opaque surface point, by the numbers u and deep of choose_light.
+struct LightChoiceBatch {
+  float p[3], normal[3];
+  uint32_t count;
+  const float *u, *deep;
+  uint32_t* light;
+  float* probability;  ///< 0 if no light reaches the point
 };
 
 }  // namespace castray

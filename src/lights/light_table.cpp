@@ -55,7 +55,48 @@ LightList LightTable::list() const {
   list.cut = tree_.cut().data();
   list.cut_count = static_cast<std::uint32_t>(tree_.cut().size());
   list.tree = tree_.pairs().data();
+  if (regions_) {
+    list.regions = regions_->view();
+    list.regions.node_of_primitive = node_of_primitive_.data();
+  }
   return list;
+}
+
+std::uint32_t LightTable::first_of(std::size_t node) const {
+  if (node == nodes()) return static_cast<std::uint32_t>(lights_.size());
+  std::uint32_t next = tree_.cut()[node].next;
+  while (next < light_leaf) next = tree_.pairs()[2 * next].next;
+  return next - light_leaf;
+}
+
+std::vector<double> LightTable::power_shares() const {
+  std::vector<double> shares;
+  for (std::size_t node = 0; node < nodes(); ++node) {
+    double power = 0;
+    for (std::uint32_t i = first_of(node); i < first_of(node + 1); ++i)
+      power += double{lights_[i].area} * radiance_of(lights_[i]);
+    shares.push_back(power / power_);
+  }
+  return shares;
+}
+
+/// A facet that is no parallelogram is two lights. Both strategies of MIS must take it for the same node.
+void LightTable::use(LightRegionTable regions, const std::vector<Facet>& facets, bool list,
+                     std::size_t triangles) {
+  std::vector<std::uint32_t> node_of_source(triangles, 0);
+  for (std::size_t node = nodes(); node-- > 0;)
+    for (std::uint32_t i = first_of(node); i < first_of(node + 1); ++i)
+      node_of_source[lights_[i].source] = static_cast<std::uint32_t>(node);
+  for (KernelLight& l : lights_) l.node = node_of_source[l.source];
+  node_of_primitive_.assign(list ? facets.size() : triangles, 0);
+  for (std::size_t i = 0; i < facets.size(); ++i) {
+    const std::uint32_t node = node_of_source[facets[i].triangle[0]];
+    if (list)
+      node_of_primitive_[i] = node;
+    else
+      for (const std::uint32_t triangle : facets[i].triangle) node_of_primitive_[triangle] = node;
+  }
+  regions_ = std::move(regions);
 }
 
 float LightTable::density(const Material& material, const Vec3d& mean_emission) const {

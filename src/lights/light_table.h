@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "castray/scene.h"
 #include "geometry/facet_records.h"
 #include "lights/light_records.h"
+#include "lights/light_regions.h"
 #include "lights/light_tree.h"
 
 namespace castray {
@@ -21,6 +23,18 @@ class LightTable {
   /// Points into this. What is not of area lights is left 0.
   LightList list() const;
 
+  /// Nodes of the cut; 0 or 1 where lights are not chosen by importance.
+  std::size_t nodes() const { return tree_.cut().size(); }
+  /// The lights of a node, side by side: from first_of(node) to first_of(node + 1).
+  std::uint32_t first_of(std::size_t node) const;
+  /// Of each node, its share of all power.
+  std::vector<double> power_shares() const;
+  const std::vector<KernelLight>& lights() const { return lights_; }
+
+  /// Makes the choice of lights know regions. `facets` as at construction; `list`: rays hit facets, not
+  /// triangles, of which there are `triangles`.
+  void use(LightRegionTable regions, const std::vector<Facet>& facets, bool list, std::size_t triangles);
+
   /// Area pdf of points on `material`, whose emission has this mean, under power-proportional light sampling.
   float density(const Material& material, const Vec3d& mean_emission) const;
 
@@ -28,6 +42,8 @@ class LightTable {
   std::vector<KernelLight> lights_;
   double power_ = 0;  ///< over pi, of all
   LightTree tree_;    ///< empty: chosen by power
+  std::optional<LightRegionTable> regions_;
+  std::vector<std::uint32_t> node_of_primitive_;
 };
 
 }  // namespace castray

@@ -40,6 +40,10 @@ std::string kernel_name(const Plan& plan) {
                                               : ", diffuse";
   name += plan.suffixes > 0 ? ", " + std::to_string(plan.suffixes) + " paths shared by 8x8 pixels"
                             : ", plain paths";
+  if (plan.light_regions > 0)
+    name += fmt::format(
+        ", lights by what is seen of them in {} {} (by a pilot, {:.2g} times as good as by bounds)",
+        plan.light_regions, plan.light_regions == 1 ? "region" : "regions", plan.gain_of_regions);
   return name + (plan.mis ? ", MIS" : "");
 }
 
@@ -74,6 +78,12 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   skip(needs.lights > 1, "choice among lights");
   skip(plan.mis, "multiple importance sampling");
   return plan;
+}
+
+void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain) {
+  plan.light_regions = regions;
+  plan.gain_of_regions = gain;
+  plan.kernel = kernel_name(plan);
 }
 
 void choose_by_pilot(Plan& plan, double gain_of_sharing) {

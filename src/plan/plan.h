@@ -17,15 +17,21 @@ struct Plan {
   int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
   int light_points = 0;                      ///< shared by each tile
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
-  bool lights_by_solid_angle = false;        ///< points on them, where that can be had
-  BuildQuality build = BuildQuality::fast;   ///< of the tree
-  std::string kernel;                        ///< what was chosen, readable
-  std::vector<std::string> skipped;          ///< what the scene does not need
+  std::size_t light_regions = 0;             ///< from which it is known what lights are seen; 0: it is not
+  double gain_of_regions = 1;               ///< how many times smaller they make a light sample's mean square
+  bool lights_by_solid_angle = false;       ///< points on them, where that can be had
+  BuildQuality build = BuildQuality::fast;  ///< of the tree
+  std::string kernel;                       ///< what was chosen, readable
+  std::vector<std::string> skipped;         ///< what the scene does not need
 };
 
 /// For an image of the window's full size. Automatic sharing is on here; a pilot may take it back
 /// (choose_by_pilot).
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
+
+/// Lets the choice of lights know what is seen from regions, by which light samples have a mean square that
+/// many times smaller, and says so in Plan::kernel.
+void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain);
 
 /// Takes what does better, if shared paths are that many times as efficient as plain ones, and says so in
 /// Plan::kernel.

@@ -20,16 +20,17 @@ CASTRAY_INLINE Vec broadcast_lane(const Vec& v, int l) {
 /// Every pixel of a tile gathers from every light point of the tile.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* boxes,
-                                const Suffixes& suffixes, VisibilityScratch& s, Gathered& gathered) {
+                                const Suffixes& suffixes, TileLights* lights, VisibilityScratch& s,
+                                Gathered& gathered) {
   if (c.scene.lights.count == 0) return;
   const int points = c.options.light_points;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     const uint32_t key = tile_key(c, tile);
     const float stratum = stratum_of(c, suffixes.origins[tile]);
-    const Receiver receiver = receiver_of(gatherers);
+    const Receiver receiver = receiver_of(c, gatherers, lights[tile]);
     for (int first = 0; first < points; first += width) {
-      const LightPoint point = tile_light_points(c, receiver, key, first);
+      const LightPoint point = tile_light_points(c, receiver, lights[tile], key, first);
       for (int l = 0; l < width && first + l < points; ++l) {
         Transfer t;
         transfer<Geometry, features>(

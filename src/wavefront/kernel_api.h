@@ -90,6 +90,8 @@ struct KernelApi {
   void (*facets_occluded)(const FacetList&, float slack, const ShadowBatch&);
   /// The lane models of a scene's materials, images left out.
   void (*evaluate_bsdfs)(const MaterialTables&, const BsdfBatch&);
+  /// The choice among a scene's lights.
+  void (*choose_lights)(const LightList&, const LightChoiceBatch&);
 };
 
 namespace scalar {

@@ -1,5 +1,6 @@
 #include "geometry/facets_lanes.h"
 #include "geometry/wide_bvh_lanes.h"
+#include "lights/light_choice_batch_lanes.h"
 #include "materials/bsdf_batch_lanes.h"
 #include "wavefront/render_tiles_lanes.h"
 #include "wavefront/tiles_lanes.h"
@@ -29,7 +30,8 @@ const KernelApi& kernel_api() {
                              bvh_occluded,
                              facets_closest,
                              facets_occluded,
-                             evaluate_bsdfs};
+                             evaluate_bsdfs,
+                             choose_lights};
   return api;
 }
 

@@ -90,4 +90,12 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   view.geometry.list.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
 }
 
+void KernelSceneData::use(LightRegionTable regions, const Scene& scene) {
+  if (bvh)
+    lights.use(std::move(regions), emitting_facets(scene), false, scene.triangles.size());
+  else
+    lights.use(std::move(regions), facets.facets, true, scene.triangles.size());
+  view.lights.regions = lights.list().regions;
+}
+
 }  // namespace castray

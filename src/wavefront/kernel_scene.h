@@ -21,6 +21,9 @@ struct KernelSceneData {
   KernelSceneData(const KernelSceneData&) = delete;
   KernelSceneData& operator=(const KernelSceneData&) = delete;
 
+  /// Makes the choice of lights know regions.
+  void use(LightRegionTable regions, const Scene& scene);
+
   Facets facets;                              ///< of a list
   std::optional<FacetsInDouble> edges;        ///< of a list
   std::optional<WideBvh> bvh;                 ///< of a tree

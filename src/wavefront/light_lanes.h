@@ -30,7 +30,12 @@ CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t ve
       pdf = max(dot(normal, wi), Float(0.f)) * Float(1.f / pi);
       f_cos = load_kd(vertices.parameters, i) * pdf;
     }
-    const Float share = c.options.mis ? light_share(point.density, pdf * segment.solid_angle) : Float(1.f);
+    Float share(1.f);
+    if (c.options.mis) {
+      Float density = point.density;
+      if (lights.regions.tree) density = density * relative_density(lights.regions, p, wi, point.node);
+      share = light_share(density, pdf * segment.solid_angle);
+    }
     const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
     const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;

@@ -12,12 +12,39 @@ LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i
     n = draw<4>(c.options.sobol, sequence_of(vertices.names, i), PathBlocks::choice(vertex));
   Mask one_sided(true);
   if (!opaque) one_sided = ~has_traits(c.scene, record_of(load(vertices.material + i)), trait_transmits);
-  const Receiver receiver = receiving_point(load(vertices.p, i), load(vertices.normal, i), one_sided);
+  const Receiver receiver =
+      receiving_point(c.scene.lights.regions, load(vertices.p, i), load(vertices.normal, i), one_sided);
   return sample_light(c.scene.lights, receiver, n.u[2], n.u[3], load(vertices.names.light_u + i),
                       load(vertices.names.light_v + i));
 }
 
-Receiver receiver_of(const Gatherers& tile) {
+/// Sums over the tile's points what is seen from their regions.
+CASTRAY_INLINE void look_around(const LightRegions& regions, const Gatherers& tile, TileLights& lights) {
+  Float seen[most_light_cut / width];
+  for (Float& s : seen) s = Float(0.f);
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Vec normal = load(tile.x.normal, tile.first + i * width);
+    const Uint row = row_at(regions, fma(normal, Float(light_front), load(tile.x.p, tile.first + i * width)));
+    const Mask there = length_squared(normal) > Float(0.f);
+    for (int l = 0; l < width; ++l) {
+      if (!(bits(there) >> l & 1)) continue;
+      for (int k = 0; k < most_light_cut / width; ++k)
+        seen[k] = seen[k] + load(regions.seen + lane(row, l) + k * width);
+    }
+  }
+  for (int k = 0; k < most_light_cut / width; ++k) store(lights.seen + k * width, seen[k]);
+}
+
+/// The pdf of the tile's light points over that of power-proportional ones.
+CASTRAY_INLINE void find_density(const LightList& list, const Receiver& tile, TileLights& lights) {
+  CutWeights weights;
+  weigh_cut(list, tile, weights);
+  const float sum = lane(weights.sum, 0), inverse = sum > 0 ? 1 / sum : 0;
+  for (uint32_t i = 0; i < list.cut_count; ++i)
+    lights.density[i] = lane(weights.of[i], 0) * inverse * list.regions.inverse_power[i];
+}
+
+Receiver receiver_of(const Context& c, const Gatherers& tile, TileLights& lights) {
   Float x[tile_vectors], y[tile_vectors], z[tile_vectors];
   for (int i = 0; i < tile_vectors; ++i) {
     const Vec normal = load(tile.x.normal, tile.first + i * width);
@@ -36,15 +63,24 @@ Receiver receiver_of(const Gatherers& tile) {
   for (int l = 0; l < width; ++l) cosine = lane(least, l) < cosine ? lane(least, l) : cosine;
   cosine -= 0x1p-12f;
   const float* half = tile.boxes.all.half;
-  return {broadcast(tile.boxes.all.center),
-          mean,
-          Float(__builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])),
-          Float(cosine),
-          Float(__builtin_sqrtf(1 - cosine * cosine)),
-          (Float(0.5f) < Float(cosine)) & (length_squared(sum) > Float(0.f))};
+  const LightList& list = c.scene.lights;
+  const Receiver receiver{broadcast(tile.boxes.all.center),
+                          mean,
+                          Float(__builtin_sqrtf(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])),
+                          Float(cosine),
+                          Float(__builtin_sqrtf(1 - cosine * cosine)),
+                          (Float(0.5f) < Float(cosine)) & (length_squared(sum) > Float(0.f)),
+                          list.regions.tree ? lights.seen : nullptr,
+                          Uint(0u)};
+  if (list.regions.tree) {
+    look_around(list.regions, tile, lights);
+    find_density(list, receiver, lights);
+  }
+  return receiver;
 }
 
-LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t key, int first) {
+LightPoint tile_light_points(const Context& c, const Receiver& tile, const TileLights& lights, uint32_t key,
+                             int first) {
   const auto points = (uint32_t)c.options.light_points;
   const Uint index = tile_index(key, c.job.sample, Uint((uint32_t)first) + lane_index(), points);
   const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, 0);
@@ -56,6 +92,7 @@ LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t ke
   point.normal = select(back, -point.normal, point.normal);
   point.weight = point.weight * (sides * Float(1.f / (float)points));
   point.density = point.density * Float((float)points) / sides;
+  if (c.scene.lights.regions.tree) point.density = point.density * gather(lights.density, point.node);
   point.p = fma(point.normal, point.error, point.p);
   return point;
 }

@@ -11,11 +11,19 @@ namespace castray::CASTRAY_ISA {
 LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i, uint32_t vertex,
                                bool opaque);
 
-/// The points of a tile, whose materials are opaque, as one receiver.
-Receiver receiver_of(const Gatherers& tile);
+/// What a tile knows of the nodes of the light tree's cut.
+struct TileLights {
+  alignas(64) float seen[most_light_cut];     ///< as LightRegions::seen, summed over the tile's points
+  alignas(64) float density[most_light_cut];  ///< as LightRegions::density, of the tile's light points
+};
+
+/// The points of a tile, whose materials are opaque, as one receiver, which refers to `lights`. Where
+/// regions are known, fills in `lights`.
+Receiver receiver_of(const Context& c, const Gatherers& tile, TileLights& lights);
 
 /// Light points of a tile from number `first` on, as many as there are lanes or points left: emitting
-/// side chosen, and offset to that side by their error.
-LightPoint tile_light_points(const Context& c, const Receiver& tile, uint32_t tile_key, int first);
+/// side chosen, and offset to that side by their error. Their density is that of the tile's points.
+LightPoint tile_light_points(const Context& c, const Receiver& tile, const TileLights& lights,
+                             uint32_t tile_key, int first);
 
 }  // namespace castray::CASTRAY_ISA

@@ -17,6 +17,7 @@ struct Scratch {
   Gathered gathered;
   VisibilityScratch visibility;
   TileBoxes boxes[max_tiles];
+  TileLights lights[max_tiles];
   VecArray<batch_size> direct;  ///< direct part of each pixel's sample
 };
 

@@ -48,7 +48,7 @@ CASTRAY_STAGE void share(Context& c, Scratch& s) {
     bound_tile(s.camera, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
     find_origins(s.camera, tile * tile_pixels, c.scene.lights.has_environment, s.suffixes.origins[tile]);
   }
-  gather_light<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.visibility, s.gathered);
+  gather_light<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.lights, s.visibility, s.gathered);
   start_suffixes<features>(c, s.camera, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);
   gather_environment<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.paths, s.hits, s.visibility,
@@ -56,6 +56,7 @@ CASTRAY_STAGE void share(Context& c, Scratch& s) {
   add_gathered_to_direct<features>(c, s);
   surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.suffixes.y, s.radiance);
   keep_suffix_ends(c, features & feature_detail, s.suffixes);
+  if (c.scene.lights.regions.tree) scale_light_density(c, s.paths.count, s.hits, s.lights, s.suffixes);
   if constexpr (features & feature_materials) {
     split_suffixes(c.scene, s.suffixes, s.glossy, s.vertices);
     follow<Geometry, features>(c, s, s.vertices, 1, first_roulette_of_suffixes);

@@ -19,6 +19,17 @@ void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes
   for (int k = 0; k < y.count; ++k) suffixes.landed[y.names.slot[k] - batch_size] = (uint32_t)k + 1;
 }
 
+void scale_light_density(const Context& c, int rays, const Hits& hits, const TileLights* lights,
+                         Suffixes& suffixes) {
+  int k = 0;
+  for (int i = 0; i < rays; ++i) {
+    if (hits.primitive[i] == no_hit) continue;
+    const uint32_t node = c.scene.lights.regions.node_of_primitive[hits.primitive[i]];
+    const uint32_t tile = (suffixes.y.names.slot[k] - batch_size) / tile_pixels;
+    suffixes.light_density[k++] *= lights[tile].density[node];
+  }
+}
+
 /// Turns vertex k, the end of a suffix, into a vertex of the path of the suffix's own pixel.
 CASTRAY_INLINE void make_private(const Suffixes& suffixes, Vertices& vertices, int k) {
   const uint32_t suffix = vertices.names.slot[k] - batch_size;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "wavefront/context_lanes.h"
-#include "wavefront/gatherers_lanes.h"
+#include "wavefront/light_points_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -39,6 +38,11 @@ CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y
 /// Fills in emission, light_density and landed for the vertices y. `emission_varies`: vertices carry
 /// their emission; otherwise it is their material's.
 void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes);
+
+/// Makes light_density that of each tile's light points, where regions of lights are known. `hits`: of the
+/// suffixes' rays.
+void scale_light_density(const Context& c, int rays, const Hits& hits, const TileLights* lights,
+                         Suffixes& suffixes);
 
 /// Copies vertices y with a rough lobe to `glossy`, all others to `others`, where those on mirrors and
 /// glass become vertices of private paths.

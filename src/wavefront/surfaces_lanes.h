@@ -16,14 +16,17 @@ CASTRAY_INLINE Float found_weight(Float arrival, Float light_pdf) {
   return select(arrival >= Float(counts_all), Float(1.f), bsdf_share(light_pdf, arrival));
 }
 
-/// MIS-weighted emission of surfaces hit at `distance`; `cosine` is of the ray and the normal.
+/// MIS-weighted emission of surfaces hit at `distance`; `cosine` is of the ray and the normal. For
+/// `relative_density` see the function of that name.
 template <uint32_t features>
 CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, const Parameters<features>& p,
-                                  Mask front, Float arrival, Float distance, Float cosine) {
+                                  Mask front, Float arrival, Float distance, Float cosine,
+                                  Float relative_density) {
   const FoundLight found = found_light(scene.materials, material, front);
   Vec emission = found.emission;
   if constexpr (features & feature_detail) emission = p.vec(slot_emission);
-  const Float weight = found_weight(arrival, found.density * distance * distance / abs(cosine));
+  const Float weight =
+      found_weight(arrival, found.density * relative_density * distance * distance / abs(cosine));
   return select(found.shines, emission * weight, black());
 }
 
@@ -64,7 +67,12 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     if (see_emission) {
       const Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
       if (any(counts)) {
-        const Vec emission = found_emission(scene, material, parameters, front, arrival, t, towards);
+        const LightRegions& regions = scene.lights.regions;
+        Float relative(1.f);
+        if (c.options.mis && regions.tree)
+          relative = relative_density(regions, o, d, gather(regions.node_of_primitive, primitive));
+        const Vec emission =
+            found_emission(scene, material, parameters, front, arrival, t, towards, relative);
         radiance.add(paths.names.slot + i, counts, throughput * emission);
       }
     }

@@ -17,6 +17,7 @@
 #include "wavefront/choose_kernel.h"
 #include "wavefront/kernel_scene.h"
 #include "wavefront/pilot.h"
+#include "wavefront/try_lights.h"
 
 namespace castray {
 
@@ -213,7 +214,10 @@ class Wavefront final : public PreparedIntegrator {
         kernel_(choose_kernel(job.options.isa)),
         triangles_(scene.triangles.size()),
         data_(scene, plan_, job.window.full_width, job.window.full_height, job.threads) {
-    if (job.options.reuse.automatic && job.options.max_depth != 1) settle_sharing(job);
+    if (job.options.max_depth == 1) return;
+    if (job.options.lights == LightSampling::automatic && data_.lights.nodes() > 1)
+      as_pilot([&] { learn_lights(scene, job); });
+    if (job.options.reuse.automatic) as_pilot([&] { settle_sharing(job); });
   }
 
   BandWork work(const Job& job) const override {
@@ -226,7 +230,10 @@ class Wavefront final : public PreparedIntegrator {
   }
 
   /// Instruction sets count rays differently in the last digit, so a near tie may fall either way.
-  std::string decisions() const override { return plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off"; }
+  std::string decisions() const override {
+    return std::string(plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off") +
+           (plan_.light_regions > 0 ? "; lights=learned" : "");
+  }
 
   void describe(RenderStats& stats) const override {
     stats.pilot_seconds = pilot_seconds_;
@@ -238,9 +245,28 @@ class Wavefront final : public PreparedIntegrator {
   }
 
  private:
+  /// Adds the time that `decide` takes to that of pilots.
+  template <class Decide>
+  void as_pilot(Decide decide) {
+    const auto begin = std::chrono::steady_clock::now();
+    decide();
+    pilot_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  /// Learns which lights are seen from where, and makes use of it where that pays.
+  void learn_lights(const Scene& scene, const Job& job) {
+    LightRegionTable regions(
+        try_lights(scene, kernel_, data_, job.window.full_width, job.window.full_height, job.threads),
+        data_.lights.power_shares());
+    const double gain = regions.gain();
+    constexpr double pays = 1.1;
+    if (gain < pays) return;
+    choose_lights_by_regions(plan_, regions.regions(), gain);
+    data_.use(std::move(regions), scene);
+  }
+
   /// Keeps shared paths unless a pilot says that plain ones do better.
   void settle_sharing(const Job& job) {
-    const auto begin = std::chrono::steady_clock::now();
     std::vector<Workplace> workplaces;
     for (int i = 0; i < job.threads; ++i) workplaces.emplace_back(kernel_);
     const RenderTiles render_tiles = kernel_.render_tiles[plan_.features];
@@ -251,7 +277,6 @@ class Wavefront final : public PreparedIntegrator {
           render_tiles(data_.view, options, tile, scratch, result);
         });
     if (gain) choose_by_pilot(plan_, *gain);
-    pilot_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
   std::string accel_summary() const {
