@@ -56,8 +56,21 @@ class Film {
   /// Adds one sample to pixel (x,y) of the full image. Different pixels may be added to by different threads.
   void add(int x, int y, const Vec3f& radiance);
 
-  /// The mean of the pixel's samples, black where it has none. (x,y) in the full image.
+  /// Starts to keep splats: what paths from lights bring to the pixels that they happen to be seen in.
+  void keep_splats();
+  bool keeps_splats() const { return !splats_.empty(); }
+  /// Adds a splat to pixel (x,y) of the full image: radiance, if there is one light path for each pixel of
+  /// the full image. Like `add`, but it is no sample of the pixel.
+  void add_splat(int x, int y, const Vec3f& radiance);
+  /// So many light paths were traced for the splats.
+  void add_light_paths(std::uint64_t count);
+  std::uint64_t light_paths(int x, int y) const { return keeps_splats() ? light_paths_[index(x, y)] : 0; }
+
+  /// The mean of the pixel's samples, with that of the splats, black where it has none. (x,y) in the full
+  /// image.
   Vec3d mean(int x, int y) const;
+  /// The part of `mean` that splats bring.
+  Vec3d mean_of_splats(int x, int y) const;
   std::uint32_t count(int x, int y) const { return counts_[index(x, y)]; }
 
   /// The means, as an image of the window's size.
@@ -112,16 +125,23 @@ class Film {
   struct Sum {
     double high = 0, low = 0;
     Sum& operator+=(const Sum& other);  ///< exact
+    void add(double v, double scale);   ///< rounded as above
+    double value() const { return high + low; }
   };
   /// The sums of one replicate.
   struct Replicate {
     std::uint64_t index = 0;
-    std::vector<Sum> sums;              ///< 3 per block
-    std::vector<std::uint64_t> counts;  ///< samples, per block
+    std::vector<Sum> sums;                   ///< 3 per block
+    std::vector<std::uint64_t> counts;       ///< samples, per block
+    std::vector<Sum> splats;                 ///< 3 per block, if splats are kept
+    std::vector<std::uint64_t> light_paths;  ///< per block, the sum over its pixels
   };
   void add(const Replicate& theirs, const Blocks& their_blocks);
 
   friend struct FilmFile;  // reads and writes the sums as they are
+
+  /// The mean of splats, from sums over pixels and the sum of their light paths.
+  Vec3d splats_over_paths(const Vec3d& splats, double paths) const;
 
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - window_.y0) * static_cast<std::size_t>(width()) +
@@ -132,6 +152,9 @@ class Film {
   double scale_ = 1;
   std::vector<Sum> sums_;  ///< 3 per pixel
   std::vector<std::uint32_t> counts_;
+  std::vector<Sum> splats_;  ///< 3 per pixel, or none
+  std::vector<std::uint64_t>
+      light_paths_;                    ///< per pixel, as windows and samples of merged films differ; or none
   std::vector<Replicate> replicates_;  ///< ascending
 };
 

@@ -49,6 +49,9 @@ struct RenderOptions {
   /// camera's hit excepted, is scaled down to have no component above this radiance. Hides rare bright
   /// samples, and loses light.
   std::optional<double> clamp_indirect;
+  /// Whether paths from lights bring the caustics that the camera sees directly, where there are perfectly
+  /// specular materials and lights with an area. `automatic`: as a pilot decides.
+  Switch caustics = Switch::automatic;
   std::string isa = "auto";
   AccelKind accel = AccelKind::automatic;
   BuildQuality build = BuildQuality::automatic;

@@ -155,6 +155,10 @@ const RenderFlag flags[] = {
      [](Request r, Text f, Text t) { r.options.lights = parse_choice(f, t, light_sampling_names); }},
     {"mis", "on|off|auto", "multiple importance sampling of lights and BSDFs [auto]", estimator,
      [](Request r, Text f, Text t) { r.options.mis = parse_choice(f, t, switch_names); }},
+    {"caustics", "auto|on|off",
+     "light by mirrors and glass: from the lights' side, or off, by chance from the camera's [auto: where it "
+     "can]",
+     estimator, [](Request r, Text f, Text t) { r.options.caustics = parse_choice(f, t, switch_names); }},
     {"reuse", "auto|off|WxH:N", "share N path suffixes in tiles of WxH pixels [auto]", estimator, set_reuse},
     {"clamp-indirect", "X|off",
      "scale a sample's indirect light down to X: fewer bright dots, but biased [off]", estimator,

@@ -75,19 +75,33 @@ Film::Sum& Film::Sum::operator+=(const Sum& other) {
   return *this;
 }
 
+void Film::Sum::add(double v, double scale) {
+  const double small = scale * 0x1p-36;
+  const double rounder = scale * 0x1.8p-8;  // 1.5 * 2^52 quanta of 2^-60: adding it rounds to a quantum
+  if (std::abs(v) < small) v = (v + rounder) - rounder;
+  const ExactSum next = two_sum(high, v);
+  high = next.sum;
+  low += next.error;
+}
+
 void Film::add(int x, int y, const Vec3f& radiance) {
   const std::size_t pixel = index(x, y);
-  const double small = scale_ * 0x1p-36;
-  const double rounder = scale_ * 0x1.8p-8;  // 1.5 * 2^52 quanta of 2^-60: adding it rounds to a quantum
-  for (int c = 0; c < 3; ++c) {
-    double v = radiance[c];
-    if (std::abs(v) < small) v = (v + rounder) - rounder;
-    Sum& s = sums_[3 * pixel + static_cast<std::size_t>(c)];
-    const ExactSum next = two_sum(s.high, v);
-    s.high = next.sum;
-    s.low += next.error;
-  }
+  for (int c = 0; c < 3; ++c) sums_[3 * pixel + static_cast<std::size_t>(c)].add(radiance[c], scale_);
   ++counts_[pixel];
+}
+
+void Film::keep_splats() {
+  splats_.resize(sums_.size());
+  light_paths_.resize(counts_.size());
+}
+
+void Film::add_light_paths(std::uint64_t count) {
+  for (std::uint64_t& paths : light_paths_) paths += count;
+}
+
+void Film::add_splat(int x, int y, const Vec3f& radiance) {
+  const std::size_t pixel = index(x, y);
+  for (int c = 0; c < 3; ++c) splats_[3 * pixel + static_cast<std::size_t>(c)].add(radiance[c], scale_);
 }
 
 Vec3d Film::mean(int x, int y) const {
@@ -95,7 +109,17 @@ Vec3d Film::mean(int x, int y) const {
   if (counts_[pixel] == 0) return {};
   const double n = counts_[pixel];
   const Sum* s = &sums_[3 * pixel];
-  return Vec3d{s[0].high + s[0].low, s[1].high + s[1].low, s[2].high + s[2].low} / n;
+  return Vec3d{s[0].value(), s[1].value(), s[2].value()} / n + mean_of_splats(x, y);
+}
+
+Vec3d Film::mean_of_splats(int x, int y) const {
+  if (light_paths(x, y) == 0) return {};
+  const Sum* s = &splats_[3 * index(x, y)];
+  return splats_over_paths({s[0].value(), s[1].value(), s[2].value()}, double(light_paths(x, y)));
+}
+
+Vec3d Film::splats_over_paths(const Vec3d& splats, double paths) const {
+  return splats * (double(window_.full_width) * window_.full_height / paths);
 }
 
 Image Film::image() const {
@@ -115,13 +139,18 @@ void Film::keep_replicates() {
   const auto columns = static_cast<std::size_t>(all.x1 - all.x0),
              rows = static_cast<std::size_t>(all.y1 - all.y0);
   Replicate replicate{samples.empty() ? 0 : samples.front().first / replicate_length,
-                      std::vector<Sum>(3 * columns * rows), std::vector<std::uint64_t>(columns * rows)};
+                      std::vector<Sum>(3 * columns * rows), std::vector<std::uint64_t>(columns * rows),
+                      std::vector<Sum>(keeps_splats() ? 3 * columns * rows : 0),
+                      std::vector<std::uint64_t>(keeps_splats() ? columns * rows : 0)};
   for (int y = window_.y0; y < window_.y1; ++y)
     for (int x = window_.x0; x < window_.x1; ++x) {
       const std::size_t block = static_cast<std::size_t>(y / noise_block - all.y0) * columns +
                                 static_cast<std::size_t>(x / noise_block - all.x0);
       for (std::size_t c = 0; c < 3; ++c) replicate.sums[3 * block + c] += sums_[3 * index(x, y) + c];
       replicate.counts[block] += counts_[index(x, y)];
+      if (!keeps_splats()) continue;
+      for (std::size_t c = 0; c < 3; ++c) replicate.splats[3 * block + c] += splats_[3 * index(x, y) + c];
+      replicate.light_paths[block] += light_paths(x, y);
     }
   replicates_ = {std::move(replicate)};
 }
@@ -130,18 +159,24 @@ std::vector<Vec3d> Film::replicate_means(const Blocks& wanted) const {
   const Blocks all = blocks();
   std::vector<Vec3d> means;
   for (const Replicate& replicate : replicates_) {
-    Vec3d sum;
-    double count = 0;
+    Vec3d sum, splats;
+    double count = 0, paths = 0;
     for (int y = wanted.y0; y < wanted.y1; ++y)
       for (int x = wanted.x0; x < wanted.x1; ++x) {
         const std::size_t block =
             static_cast<std::size_t>(y - all.y0) * static_cast<std::size_t>(all.x1 - all.x0) +
             static_cast<std::size_t>(x - all.x0);
         const Sum* s = &replicate.sums[3 * block];
-        sum += Vec3d{s[0].high + s[0].low, s[1].high + s[1].low, s[2].high + s[2].low};
+        sum += Vec3d{s[0].value(), s[1].value(), s[2].value()};
         count += static_cast<double>(replicate.counts[block]);
+        if (replicate.splats.empty()) continue;
+        paths += static_cast<double>(replicate.light_paths[block]);
+        s = &replicate.splats[3 * block];
+        splats += Vec3d{s[0].value(), s[1].value(), s[2].value()};
       }
-    means.push_back(count > 0 ? sum / count : Vec3d{});
+    Vec3d mean = count > 0 ? sum / count : Vec3d{};
+    if (paths > 0) mean += splats_over_paths(splats, paths);
+    means.push_back(mean);
   }
   return means;
 }
@@ -173,12 +208,16 @@ void Film::merge(const Film& other) {
 }
 
 void Film::add(const Film& other) {
+  if (other.keeps_splats()) keep_splats();
   const Window& w = other.window_;
   const auto columns = static_cast<std::size_t>(w.width());
   for (int y = w.y0; y < w.y1; ++y) {
     const std::size_t to = index(w.x0, y), from = other.index(w.x0, y);
     for (std::size_t i = 0; i < 3 * columns; ++i) sums_[3 * to + i] += other.sums_[3 * from + i];
     for (std::size_t i = 0; i < columns; ++i) counts_[to + i] += other.counts_[from + i];
+    if (!other.keeps_splats()) continue;
+    for (std::size_t i = 0; i < 3 * columns; ++i) splats_[3 * to + i] += other.splats_[3 * from + i];
+    for (std::size_t i = 0; i < columns; ++i) light_paths_[to + i] += other.light_paths_[from + i];
   }
   for (const Replicate& theirs : other.replicates_) add(theirs, other.blocks());
   nonfinite_samples += other.nonfinite_samples;
@@ -191,8 +230,10 @@ void Film::add(const Replicate& theirs, const Blocks& their_blocks) {
   auto ours = std::lower_bound(replicates_.begin(), replicates_.end(), theirs.index,
                                [](const Replicate& r, std::uint64_t i) { return r.index < i; });
   if (ours == replicates_.end() || ours->index != theirs.index)
-    ours = replicates_.insert(ours, {theirs.index, std::vector<Sum>(3 * columns * rows),
-                                     std::vector<std::uint64_t>(columns * rows)});
+    ours = replicates_.insert(
+        ours, {theirs.index, std::vector<Sum>(3 * columns * rows), std::vector<std::uint64_t>(columns * rows),
+               std::vector<Sum>(keeps_splats() ? 3 * columns * rows : 0),
+               std::vector<std::uint64_t>(keeps_splats() ? columns * rows : 0)});
   std::size_t from = 0;
   for (int y = their_blocks.y0; y < their_blocks.y1; ++y)
     for (int x = their_blocks.x0; x < their_blocks.x1; ++x, ++from) {
@@ -200,6 +241,9 @@ void Film::add(const Replicate& theirs, const Blocks& their_blocks) {
           static_cast<std::size_t>(y - all.y0) * columns + static_cast<std::size_t>(x - all.x0);
       for (std::size_t c = 0; c < 3; ++c) ours->sums[3 * to + c] += theirs.sums[3 * from + c];
       ours->counts[to] += theirs.counts[from];
+      if (theirs.splats.empty()) continue;
+      for (std::size_t c = 0; c < 3; ++c) ours->splats[3 * to + c] += theirs.splats[3 * from + c];
+      ours->light_paths[to] += theirs.light_paths[from];
     }
 }
 
@@ -228,9 +272,9 @@ Metadata describe(const Film& film) {
     const std::string name = item.substr(0, item.find('='));
     const std::string value(
         unescape_item(std::string_view(item).substr(std::min(name.size() + 1, item.size()))));
-    if (name == "scene" || name == "hash" || name == "seed" || name == "sharing")
+    if (name == "scene" || name == "hash" || name == "seed" || name == "sharing" || name == "light-paths")
       metadata["castray:" + name] = value;
-    if (name != "scene" && name != "hash" && name != "sharing")
+    if (name != "scene" && name != "hash" && name != "sharing" && name != "light-paths")
       options += (options.empty() ? "--" : " --") + name + " " + value;
     if (name == "clamp-indirect") metadata["castray:biased"] = item;
   }

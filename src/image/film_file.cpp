@@ -16,7 +16,9 @@ namespace castray {
 
 // A film file: the line "castray film 1", a line of JSON, then little-endian: per pixel of the window, top
 // row first, red, green, blue, the pair (high, low) of doubles with high + low the sum and high its rounding;
-// then per pixel the number of samples (32 bits); then the CRC-32 of all before.
+// then per pixel the number of samples (32 bits); the same, with 64 bits, per block of each replicate; the
+// sums of splats and the numbers of light paths (64 bits), per block after each replicate and per pixel at
+// the end, if the header has "splats"; then the CRC-32 of all before.
 
 static_assert(std::endian::native == std::endian::little, "film files are written as memory holds them");
 
@@ -48,6 +50,7 @@ struct FilmFile {
                 {"version", film.version}};
     if (film.planned && film.samples != std::vector{*film.planned})
       header["planned"] = {film.planned->first, film.planned->count};
+    if (film.keeps_splats()) header["splats"] = true;
     std::string bytes =
         std::string(magic) + header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
     append_sums(bytes, film.sums_);
@@ -55,7 +58,11 @@ struct FilmFile {
     for (const Film::Replicate& replicate : film.replicates_) {
       append_sums(bytes, replicate.sums);
       append(bytes, replicate.counts);
+      append_sums(bytes, replicate.splats);
+      append(bytes, replicate.light_paths);
     }
+    append_sums(bytes, film.splats_);
+    append(bytes, film.light_paths_);
     append(bytes, std::array{checksum(bytes)});
     return bytes;
   }
@@ -83,8 +90,10 @@ struct FilmFile {
     const auto blocks =
         static_cast<std::size_t>(grid.x1 - grid.x0) * static_cast<std::size_t>(grid.y1 - grid.y0);
     constexpr std::size_t colour_bytes = 3 * sizeof(Film::Sum);
-    const std::size_t length = pixels * (colour_bytes + 4) +
-                               film.replicates_.size() * blocks * (colour_bytes + 8) + sizeof(std::uint32_t);
+    const std::size_t splat_bytes = film.keeps_splats() ? colour_bytes + 8 : 0;
+    const std::size_t length = pixels * (colour_bytes + 4 + splat_bytes) +
+                               film.replicates_.size() * blocks * (colour_bytes + 8 + splat_bytes) +
+                               sizeof(std::uint32_t);
     if (data.size() != length) fail(data.size() < length ? "is truncated" : "has bytes behind its end");
     std::uint32_t stored;
     std::memcpy(&stored, data.data() + length - sizeof stored, sizeof stored);
@@ -96,7 +105,13 @@ struct FilmFile {
     for (Film::Replicate& replicate : film.replicates_) {
       at = read_values(at, replicate.sums, 3 * blocks);
       at = read_values(at, replicate.counts, blocks);
+      if (!film.keeps_splats()) continue;
+      at = read_values(at, replicate.splats, 3 * blocks);
+      at = read_values(at, replicate.light_paths, blocks);
     }
+    if (!film.keeps_splats()) return film;
+    at = read_values(at, film.splats_, 3 * pixels);
+    at = read_values(at, film.light_paths_, pixels);
     return film;
   }
 
@@ -151,10 +166,11 @@ struct FilmFile {
     film.nonfinite_samples = whole(header.at("nonfinite_samples"));
     film.version = header.at("version").get<std::string>();
     for (const json& index : header.at("replicates")) {
-      film.replicates_.push_back({whole(index), {}, {}});
+      film.replicates_.push_back({whole(index), {}, {}, {}, {}});
       const std::size_t n = film.replicates_.size();
       demand(n == 1 || film.replicates_[n - 2].index < film.replicates_[n - 1].index, "bad replicates");
     }
+    if (header.contains("splats")) film.splats_.resize(1);  // kept: their number follows from the window
     std::uint64_t end = 0;
     for (const json& item : header.at("samples")) {
       const SampleRange range = range_of(item);

@@ -14,6 +14,7 @@ namespace castray {
 /// What rendering some rows hands back besides the film's sums.
 struct RowStats {
   std::uint64_t rays = 0;
+  std::uint64_t light_paths = 0;           ///< see Film::light_paths
   std::vector<NonfiniteSample> nonfinite;  ///< samples dropped
 };
 
@@ -23,6 +24,7 @@ struct BandWork {
   /// Bands may add to rows of their neighbours. Then `render` locks the rows, there is one band more than
   /// fits the window, and a stop within a pass leaves a film that cannot be resumed.
   bool overlap = false;
+  bool splats = false;  ///< the film must keep them; bands may add them anywhere, under locks of their own
   /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
   /// image. Called by several threads at a time, for different bands.
   std::function<void(int y0, int y1, const SampleRange& samples, const SampleMap& map, Film& film,

@@ -72,6 +72,7 @@ void check_reference(const RenderOptions& o) {
           "--lights: " + reference + " samples lights by area only" + leave);
   require(o.reuse.automatic || o.reuse.width == 0,
           "--reuse: " + reference + " shares no paths" + leave + (by_epsilon ? "" : " or off"));
+  require(o.caustics != Switch::on, "--caustics on: " + reference + " has no paths from lights" + leave);
   require(o.isa == "auto" || o.isa == "scalar",
           "--isa " + o.isa + ": " + reference + " has no vector kernels" + leave);
 }
@@ -84,6 +85,8 @@ void check_wavefront(const RenderOptions& o, Fault fault) {
           fmt::format("--epsilon {}: only the reference integrator has an absolute epsilon, not --integrator "
                       "wavefront; leave one out",
                       o.epsilon.value_or(0)));
+  require(o.caustics != Switch::on || (o.jitter && !o.clamp_indirect),
+          "--caustics on: paths from lights know neither --jitter off nor --clamp-indirect; leave one out");
   const Reuse& r = o.reuse;
   require(r.automatic || r.width == 0 ||
               (r.width == 8 && r.height == 8 && r.suffixes >= 1 && r.suffixes <= 64 &&

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "castray/error.h"
 #include "core/contract.h"
 #include "geometry/build_quality.h"
 #include "lights/light_share.h"
@@ -22,6 +23,13 @@ bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
   if (needs.textures || needs.smooth_normals || needs.coverage) return false;  // facets have no barycentrics
   return options.accel == AccelKind::list ||
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
+}
+
+/// Paths from lights that are like those from the camera: where surfaces have holes they would need worlds of
+/// their own, and shading normals depend on the side that they are seen from.
+bool may_have_light_paths(const SceneNeeds& needs) {
+  return needs.specular && needs.lights > 0 && !needs.coverage && !needs.smooth_normals &&
+         !needs.bent_normals;
 }
 
 /// spp is ignored: the tree changes low-order bits, and films that are merged or resumed must share one tree.
@@ -44,6 +52,7 @@ std::string kernel_name(const Plan& plan) {
     name += fmt::format(
         ", lights by what is seen of them in {} {} (by a pilot, {:.2g} times as good as by bounds)",
         plan.light_regions, plan.light_regions == 1 ? "region" : "regions", plan.gain_of_regions);
+  if (plan.light_paths) name += ", caustics by paths from lights";
   return name + (plan.mis ? ", MIS" : "");
 }
 
@@ -62,6 +71,12 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.mis = uses_mis(options.mis, scene, std::max(1.0, double(plan.suffixes) / plan.light_points));
+  plan.light_paths = may_have_light_paths(needs) && options.caustics != Switch::off;
+  if (options.caustics == Switch::on && !plan.light_paths)
+    throw InputError(
+        "--caustics on: paths from lights need a lamp, a smooth mirror or glass, and no coverage, smooth "
+        "normals, "
+        "normal maps or bump maps; leave it at auto");
   plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options, window);
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, std::string_view what) {
@@ -76,6 +91,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
     if (material->type != MaterialType::diffuse) skip(materials, material->name);
   skip(needs.environment, "environment");
   skip(needs.lights > 1, "choice among lights");
+  skip(plan.light_paths, "paths from lights");
   skip(plan.mis, "multiple importance sampling");
   return plan;
 }

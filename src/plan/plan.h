@@ -14,6 +14,7 @@ struct Plan {
   bool list = false;                         ///< a flat list instead of a tree
   std::uint32_t features = 0;                ///< KernelFeature set of the kernel
   bool mis = false;                          ///< light and BSDF sampling share emission
+  bool light_paths = false;                  ///< bring the caustics that the camera sees directly
   int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
   int light_points = 0;                      ///< shared by each tile
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power

@@ -22,6 +22,7 @@ const char* misfit(const Job& job, const Job& prepared) {
   if (a.epsilon != b.epsilon) return "--epsilon";
   if (a.lights != b.lights) return "--lights";
   if (a.mis != b.mis) return "--mis";
+  if (a.caustics != b.caustics) return "--caustics";
   if (a.isa != b.isa) return "--isa";
   if (a.accel != b.accel) return "--accel";
   if (a.build != b.build) return "--build";

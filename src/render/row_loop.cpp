@@ -10,6 +10,7 @@
 #include <limits>
 #include <mutex>
 #include <tuple>
+#include <utility>
 
 #include "castray/error.h"
 
@@ -118,8 +119,10 @@ class RowLoop {
 
   RenderResult run(const BandWork& work) {
     begin_ = Clock::now();
+    if (work.splats) result_.film.keep_splats();
     while (!stopped_ && least_finished() < samples_.count) {
       run_pass(end_of_next_pass(), work);
+      result_.film.add_light_paths(std::exchange(light_paths_, 0));
       note_samples();
       if (!stopped_) report(&result_.film);
       if (!stopped_ && whole_passes_ && seconds() + pace_.seconds_per_sample() > time_limit_)
@@ -209,6 +212,7 @@ class RowLoop {
   void add(const RowStats& stats) {
     const std::lock_guard lock(mutex_);
     totals_.rays += stats.rays;
+    light_paths_ += stats.light_paths;
     result_.film.nonfinite_samples += stats.nonfinite.size();
     auto& first = totals_.nonfinite;
     first.insert(first.end(), stats.nonfinite.begin(), stats.nonfinite.end());
@@ -261,6 +265,7 @@ class RowLoop {
   std::atomic<std::uint64_t> paths_ = 0;
   std::uint64_t paths_before_ = 0;  ///< of the film that was resumed
   RowStats totals_;
+  std::uint64_t light_paths_ = 0;  ///< of this pass
   std::mutex mutex_, reporting_;
   std::atomic<bool> stopped_ = false;
   Stopped reason_ = Stopped::done;

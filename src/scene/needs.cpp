@@ -1,5 +1,7 @@
 #include "scene/needs.h"
 
+#include "materials/descriptor.h"
+
 namespace castray {
 
 SceneNeeds needs_of(const Scene& scene) {
@@ -15,6 +17,8 @@ SceneNeeds needs_of(const Scene& scene) {
     const Material& m = scene.materials[i];
     needs.textures |= m.has_maps_of_values() && !scene.triangle_uvs.empty();
     needs.textures |= m.vertex_colors && !scene.triangle_colors.empty();
+    needs.specular |= (traits_of(m) & trait_specular) != 0;
+    needs.bent_normals |= (traits_of(m) & trait_bent) != 0;
     needs.coverage |= m.may_have_holes();
     needs.types.insert(m.type);
   }

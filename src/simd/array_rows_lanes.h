@@ -18,4 +18,11 @@ CASTRAY_INLINE void compress_entries(Arrays& to, int n, Mask m, const Arrays& fr
                    load((const uint32_t*)&from + row * Arrays::size + i));
 }
 
+/// Copies entry i of `from` to entry n of `to`.
+template <class Arrays>
+CASTRAY_INLINE void copy_entry(Arrays& to, int n, const Arrays& from, int i) {
+  for (int row = 0; row < rows_of<Arrays>; ++row)
+    ((uint32_t*)&to)[row * Arrays::size + n] = ((const uint32_t*)&from)[row * Arrays::size + i];
+}
+
 }  // namespace castray::CASTRAY_ISA

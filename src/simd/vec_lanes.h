@@ -60,6 +60,11 @@ CASTRAY_INLINE void compress_store(VecArray<N>& a, int i, Mask m, Vec v) {
   compress_store(a.y + i, m, v.y);
   compress_store(a.z + i, m, v.z);
 }
+/// One entry in each lane.
+template <int N>
+CASTRAY_INLINE Vec gather_entries(const VecArray<N>& a, Uint i) {
+  return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
+}
 /// The three floats that begin `offset` floats after `base`.
 CASTRAY_INLINE Vec gather_vec(const float* base, Uint offset) {
   return {gather(base, offset), gather(base + 1, offset), gather(base + 2, offset)};

@@ -22,9 +22,10 @@ CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges)
 }
 
 /// Follows paths from their vertices, which are number `vertex` of each path, to the end: a light sample
-/// at each vertex, then the next ray.
+/// at each vertex, then the next ray. With `chains` only to the ends of these.
 template <class Geometry, uint32_t features>
-CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette) {
+CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette,
+                          Chains* chains = nullptr) {
   const bool may_find_lights = c.options.mis || (features & feature_materials);
   Vertices* current = &vertices;
   for (; may_have_edges(c.options, vertex + 2); ++vertex) {
@@ -36,6 +37,7 @@ CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t v
     closest<Geometry>(c, s.paths, false, s.hits);
     surfaces<Geometry, features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
     current = &s.vertices;
+    if (chains) take_chain_ends(c.scene, s.paths, *current, *chains);
   }
 }
 

@@ -25,6 +25,7 @@ CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* 
   if (c.scene.lights.count == 0) return;
   const int points = c.options.light_points;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
+    if ((features & feature_materials) && boxes[tile].empty) continue;
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     const uint32_t key = tile_key(c, tile);
     const float stratum = stratum_of(c, suffixes.origins[tile]);

@@ -3,9 +3,9 @@
 namespace castray::CASTRAY_ISA {
 
 /// Bounds of a range of vertices; entries without a hit do not count. A point at the origin if there is
-/// none.
+/// none: `empty`.
 template <int vectors>
-CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
+CASTRAY_INLINE Box bounds_of(const Vertices& x, int first, bool& empty) {
   const float* axes[3] = {x.p.x, x.p.y, x.p.z};
   Box box{};
   Mask valid[vectors];
@@ -14,7 +14,8 @@ CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
     valid[i] = length_squared(load(x.normal, first + i * width)) > Float(0.f);
     found |= bits(valid[i]);
   }
-  if (!found) return box;
+  empty = !found;
+  if (empty) return box;
   for (int axis = 0; axis < 3; ++axis) {
     Float low(__builtin_inff()), high(-__builtin_inff());
     for (int i = 0; i < vectors; ++i) {
@@ -34,9 +35,11 @@ CASTRAY_INLINE Box bounds_of(const Vertices& x, int first) {
 }
 
 void bound_tile(const Vertices& x, int first, bool in_parts, TileBoxes& boxes) {
-  boxes.all = bounds_of<tile_vectors>(x, first);
+  boxes.all = bounds_of<tile_vectors>(x, first, boxes.empty);
   if (!in_parts) return;
-  for (int i = 0; i < tile_parts; ++i) boxes.part[i] = bounds_of<part_vectors>(x, first + i * part_pixels);
+  bool empty;
+  for (int i = 0; i < tile_parts; ++i)
+    boxes.part[i] = bounds_of<part_vectors>(x, first + i * part_pixels, empty);
 }
 
 namespace {

@@ -16,6 +16,7 @@ inline constexpr int tile_parts = 4, part_pixels = tile_pixels / tile_parts,
 /// Bounds of a tile's points, and of its parts.
 struct TileBoxes {
   Box all, part[tile_parts];
+  bool empty;  ///< no point of the tile is on a surface
 };
 
 /// Where the suffixes of a tile may start.

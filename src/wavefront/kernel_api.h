@@ -38,6 +38,7 @@ struct KernelOptions {
   uint32_t max_depth;   ///< in path edges; 0: no limit
   float most_indirect;  ///< bound of each component of a sample's indirect part; may be infinite
   bool mis;             ///< weigh emission found by BSDF sampling against light sampling
+  bool light_paths;     ///< bring the caustics that the camera sees directly: see light_paths_lanes.h
   int suffixes;         ///< traced for each tile; 0: pixels share no paths
   int light_points;     ///< shared by the pixels of a tile
   uint64_t ragged;      ///< samples with a lower index have tiles with ragged edges
@@ -69,6 +70,24 @@ struct TileResult {
   uint64_t rays, gathered, evaluated;
 };
 
+/// Some of the paths from lights of one sample, at most batch_size, that have numbers from `first` on, a
+/// multiple of batch_size.
+struct LightPathJob {
+  uint64_t sample, first;
+  int count;
+  int width, height;  ///< of the full image
+};
+
+/// Takes splats: radiance that light paths add to the pixels (x,y), over the number of light paths per pixel.
+struct SplatSink {
+  void* self;
+  void (*add)(void* self, int count, const uint32_t* x, const uint32_t* y, const float* const radiance[3]);
+};
+
+/// Returns the number of rays traced.
+using TraceLightPaths = uint64_t (*)(const KernelScene&, const KernelOptions&, const LightPathJob&,
+                                     void* scratch, const SplatSink&);
+
 using RenderTiles = void (*)(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
                              TileResult&);
 
@@ -80,6 +99,7 @@ struct KernelApi {
   /// By KernelFeature set; null where none is compiled. `scratch`: scratch_bytes, aligned to 64, of the
   /// calling thread.
   RenderTiles render_tiles[8];
+  TraceLightPaths trace_light_paths[8];  ///< likewise; null without other materials than diffuse ones
   /// sample_block of core/sequences.h, for samples of the first epoch.
   void (*sample_block)(bool sobol, uint32_t key, uint32_t index, uint32_t block, float* u);
   void (*bvh_closest)(const WideBvhView&, const RayBatch&);      ///< the nearest hit of every ray

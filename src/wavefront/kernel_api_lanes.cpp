@@ -25,6 +25,8 @@ const KernelApi& kernel_api() {
                              sizeof(Scratch),
                              {render_tiles_list_diffuse, render_tiles_bvh_diffuse, render_tiles_list,
                               render_tiles_bvh, nullptr, nullptr, nullptr, render_tiles_bvh_detail},
+                             {nullptr, nullptr, trace_light_paths_list, trace_light_paths_bvh, nullptr,
+                              nullptr, nullptr, trace_light_paths_bvh_detail},
                              sample_block,
                              bvh_closest,
                              bvh_occluded,

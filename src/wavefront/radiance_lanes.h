@@ -11,6 +11,9 @@ struct Radiance {
   alignas(64) float x[3 * batch_size], y[3 * batch_size], z[3 * batch_size];
 
   CASTRAY_INLINE void clear() { __builtin_memset(this, 0, sizeof *this); }
+  CASTRAY_INLINE void clear_suffixes() {
+    for (int slot = batch_size; slot < 3 * batch_size; ++slot) x[slot] = y[slot] = z[slot] = 0;
+  }
   CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
 
   /// Adds the lanes in `m`, no two of which have the same slot.

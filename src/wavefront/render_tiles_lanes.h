@@ -12,6 +12,10 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
                                  void* scratch, TileResult& result) {
   Scratch& s = *static_cast<Scratch*>(scratch);
   Context c{scene, options, job, s.ends, world_key(options, job.sample)};
+  if ((features & feature_materials) && options.light_paths) {
+    c.left_to_light_paths = s.left_to_light_paths;
+    for (uint32_t& left : s.left_to_light_paths) left = 1;
+  }
   s.ends.fill();
   s.radiance.clear();
   place_pixels(c, result);

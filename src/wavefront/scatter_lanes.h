@@ -6,20 +6,53 @@
 
 namespace castray::CASTRAY_ISA {
 
+enum class Transport : uint8_t {
+  from_camera,
+  from_light,
+  from_light_specular  ///< by specular lobes alone
+};
+
 /// Survival probability of paths at `vertex`. Even a fixed one is capped after many vertices, so that
-/// every path ends.
+/// every path ends. Light that is caught in glass for long has the weight of all that is not: paths from
+/// lights, whose caustics are narrow, are capped late.
 CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uint32_t first_roulette,
-                              Float brightest) {
+                              Float brightest, Transport transport) {
   constexpr float highest = (float)highest_survival;
+  constexpr uint32_t first_capped_of_light = 256;
   if (options.fixed_roulette)
     return Float(vertex < first_capped_vertex || options.survival < highest ? options.survival : highest);
-  return vertex < first_roulette ? Float(1.f) : min(brightest, Float(highest));
+  const bool capped = transport == Transport::from_camera || vertex >= first_capped_of_light;
+  return vertex < first_roulette ? Float(1.f) : min(brightest, Float(capped ? highest : 1.f));
 }
 
-/// BSDF sampling and Russian roulette: the next ray of each path that survives.
+/// Paths::arrival of the rays that specular lobes send on from vertices i to i + width - 1. What the camera
+/// itself sees decides which caustics are left to light paths.
+CASTRAY_INLINE Float arrival_after_specular(const Context& c, const Vertices& vertices, int i,
+                                            uint32_t vertex, Mask specular) {
+  if (!c.left_to_light_paths) return Float(counts_all);
+  if (vertex > 0) {
+    const Mask left = gather(c.left_to_light_paths, load(vertices.names.slot + i)) == Uint(1u);
+    return select(left, Float(counts_outside), Float(counts_all));
+  }
+  uint32_t seen_by_mirror = bits(specular & first_lanes(vertices.count - i));
+  for (; seen_by_mirror; seen_by_mirror &= seen_by_mirror - 1)
+    c.left_to_light_paths[vertices.names.slot[i + __builtin_ctz(seen_by_mirror)]] = 0;
+  return Float(counts_all);
+}
+
+/// What smooth normals change in the throughput of a path from a light, in scattering from wo to wi: seen
+/// from the camera, light comes from wo (Veach 1997, section 5.3).
+CASTRAY_INLINE Float shading_normal_factor(const Shading& shading, Vec wo, Vec wi, Vec local_wi) {
+  return abs(dot(shading.normal, wi) * shading.wo.z) /
+         max(abs(dot(shading.normal, wo) * local_wi.z), Float(0x1p-60f));
+}
+
+/// BSDF sampling and Russian roulette: the next ray of each path that survives. From lights, throughput over
+/// eta2 is that of radiance, too.
 template <uint32_t features>
 CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t vertex,
-                           uint32_t first_roulette, Paths& out) {
+                           uint32_t first_roulette, Paths& out,
+                           Transport transport = Transport::from_camera) {
   out.count = 0;
   const bool roulette = c.options.fixed_roulette || vertex >= first_roulette;
   for (int i = 0; i < vertices.count; i += width) {
@@ -35,7 +68,12 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
       const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
       wi = to_world(shading.frame, s.wi);
       throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
-      arrival = select(s.specular, Float(counts_all), c.options.mis ? s.pdf : Float(0.f));
+      arrival = select(s.specular, arrival_after_specular(c, vertices, i, vertex, s.specular),
+                       c.options.mis ? s.pdf : Float(0.f));
+      if constexpr (features & feature_detail)
+        if (transport != Transport::from_camera)
+          throughput = throughput * shading_normal_factor(shading, load(vertices.wo, i), wi, s.wi);
+      if (transport == Transport::from_light_specular) throughput = select(s.specular, throughput, black());
       eta2 = load(vertices.eta2 + i) * s.eta2;
       brightest = max_component(throughput) * eta2;
       o = leave(vertices, i, wi);
@@ -48,7 +86,7 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
     }
     Mask alive = first_lanes(vertices.count - i) & ~(brightest <= Float(0.f));
     if (roulette) {
-      const Float p = survival(c.options, vertex, first_roulette, brightest);
+      const Float p = survival(c.options, vertex, first_roulette, brightest, transport);
       alive = alive & (choice.u[0] < p);
       throughput = throughput * (Float(1.f) / p);
     }

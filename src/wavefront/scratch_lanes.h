@@ -1,5 +1,7 @@
 #pragma once
 
+#include "wavefront/camera_connections_lanes.h"
+#include "wavefront/chains_lanes.h"
 #include "wavefront/gather_environment_lanes.h"
 #include "wavefront/gather_suffixes_lanes.h"
 #include "wavefront/light_lanes.h"
@@ -11,6 +13,10 @@ struct Scratch {
   Paths paths;
   Hits hits;
   Vertices camera, vertices, glossy;
+  Chains chains;
+  alignas(64) uint32_t left_to_light_paths[3 * batch_size];  ///< see Context
+  CameraConnections to_camera;
+  alignas(64) float flux[batch_size];  ///< of light paths
   ShadowRays shadow_rays;
   Radiance radiance;
   Suffixes suffixes;

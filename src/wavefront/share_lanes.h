@@ -18,7 +18,8 @@
 // found by suffixes and by light points, so MIS weights it.
 //
 // Diffuse and rough y_j are shared. Mirrors and glass are not: there suffixes go on as private paths of
-// their own pixels, and camera vertices on mirrors and glass gather nothing.
+// their own pixels. Where the camera sees mirrors or glass, x_i is the first vertex behind them that is
+// neither; these x_i share among themselves, as they lie elsewhere than those that the camera sees.
 
 namespace castray::CASTRAY_ISA {
 
@@ -35,37 +36,65 @@ CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   follow<Geometry, features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
 }
 
-/// Light reflected by the camera's vertices, gathered tile by tile.
+/// Light reflected by vertices x, gathered tile by tile, becomes s.gathered. `direct`: the camera sees x.
 template <class Geometry, uint32_t features>
-CASTRAY_STAGE void share(Context& c, Scratch& s) {
+CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) {
   const int n = c.job.tiles * tile_pixels;
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
-  if constexpr (features & feature_materials) {
-    split_unshareable(c.scene, s.camera, s.vertices);
-    if (s.vertices.count > 0) follow<Geometry, features>(c, s, s.vertices, 0, first_roulette_vertex);
-  }
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    bound_tile(s.camera, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
-    find_origins(s.camera, tile * tile_pixels, c.scene.lights.has_environment, s.suffixes.origins[tile]);
+    bound_tile(x, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
+    find_origins(x, tile * tile_pixels, c.scene.lights.has_environment, s.suffixes.origins[tile]);
   }
-  gather_light<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.lights, s.visibility, s.gathered);
-  start_suffixes<features>(c, s.camera, s.suffixes, s.paths);
+  gather_light<Geometry, features>(c, x, s.boxes, s.suffixes, s.lights, s.visibility, s.gathered);
+  start_suffixes<features>(c, x, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);
-  gather_environment<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.paths, s.hits, s.visibility,
+  gather_environment<Geometry, features>(c, x, s.boxes, s.suffixes, s.paths, s.hits, s.visibility,
                                          s.gathered);
-  add_gathered_to_direct<features>(c, s);
+  if (direct) add_gathered_to_direct<features>(c, s);
   surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.suffixes.y, s.radiance);
   keep_suffix_ends(c, features & feature_detail, s.suffixes);
   if (c.scene.lights.regions.tree) scale_light_density(c, s.paths.count, s.hits, s.lights, s.suffixes);
   if constexpr (features & feature_materials) {
-    split_suffixes(c.scene, s.suffixes, s.glossy, s.vertices);
+    split_suffixes(c.scene, x, s.suffixes, s.glossy, s.vertices);
     follow<Geometry, features>(c, s, s.vertices, 1, first_roulette_of_suffixes);
     follow_glossy<Geometry, features>(c, s);
   } else {
     follow<Geometry, features>(c, s, s.suffixes.y, 1, first_roulette_of_suffixes);
   }
-  gather_suffixes<Geometry, features>(c, s.camera, s.boxes, s.suffixes, s.radiance, s.visibility, s.gathered);
-  for (int i = 0; i < n; i += width) store(s.radiance, i, load(s.radiance, i) + reflected<features>(s, i));
+  gather_suffixes<Geometry, features>(c, x, s.boxes, s.suffixes, s.radiance, s.visibility, s.gathered);
+}
+
+CASTRAY_INLINE void leave_suffixes_to_light_paths(const Context& c, uint32_t left) {
+  if (!c.left_to_light_paths) return;
+  for (int slot = batch_size; slot < 3 * batch_size; ++slot) c.left_to_light_paths[slot] = left;
+}
+
+/// Follows the camera's paths on mirrors and glass, and gathers where their specular chains end. With a
+/// limited depth they would not all have the same depth left, and stay private.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void share_chains(Context& c, Scratch& s) {
+  split_unshareable(c.scene, s.camera, s.vertices);
+  if (s.vertices.count == 0) return;
+  start_chains(s.camera, s.chains);
+  follow<Geometry, features>(c, s, s.vertices, 0, first_roulette_vertex,
+                             c.options.max_depth == 0 ? &s.chains : nullptr);
+  if (!s.chains.any) return;
+  leave_suffixes_to_light_paths(c, 0);
+  gather_all<Geometry, features>(c, s, s.chains.ends, false);
+  leave_suffixes_to_light_paths(c, 1);
+  for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
+    store(s.radiance, i,
+          fma_vec(load(s.chains.ends.throughput, i), load(s.gathered.sum, i), load(s.radiance, i)));
+  s.radiance.clear_suffixes();
+}
+
+/// Light reflected by what the camera sees, shared by the pixels of each tile.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void share(Context& c, Scratch& s) {
+  if constexpr (features & feature_materials) share_chains<Geometry, features>(c, s);
+  gather_all<Geometry, features>(c, s, s.camera, true);
+  for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
+    store(s.radiance, i, load(s.radiance, i) + reflected<features>(s, i));
 }
 
 }  // namespace castray::CASTRAY_ISA

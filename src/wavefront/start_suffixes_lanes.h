@@ -6,11 +6,6 @@
 
 namespace castray::CASTRAY_ISA {
 
-template <int N>
-CASTRAY_INLINE Vec gather_entries(const VecArray<N>& a, Uint i) {
-  return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
-}
-
 /// Sequence indices of the suffixes of a tile. Under an environment runs of 2^k suffixes have runs of
 /// indices, so that what points of one orientation send out is stratified.
 CASTRAY_INLINE Uint suffix_index(const Context& c, uint32_t key, Uint item, uint32_t per_tile) {

@@ -31,15 +31,16 @@ void scale_light_density(const Context& c, int rays, const Hits& hits, const Til
 }
 
 /// Turns vertex k, the end of a suffix, into a vertex of the path of the suffix's own pixel.
-CASTRAY_INLINE void make_private(const Suffixes& suffixes, Vertices& vertices, int k) {
-  const uint32_t suffix = vertices.names.slot[k] - batch_size;
-  vertices.names.slot[k] = suffixes.origin[suffix];
-  vertices.throughput.x[k] = suffixes.weight.x[suffix];
-  vertices.throughput.y[k] = suffixes.weight.y[suffix];
-  vertices.throughput.z[k] = suffixes.weight.z[suffix];
+CASTRAY_INLINE void make_private(const Vertices& x, const Suffixes& suffixes, Vertices& vertices, int k) {
+  const uint32_t suffix = vertices.names.slot[k] - batch_size, origin = suffixes.origin[suffix];
+  vertices.names.slot[k] = origin;
+  vertices.throughput.x[k] = suffixes.weight.x[suffix] * x.throughput.x[origin];
+  vertices.throughput.y[k] = suffixes.weight.y[suffix] * x.throughput.y[origin];
+  vertices.throughput.z[k] = suffixes.weight.z[suffix] * x.throughput.z[origin];
 }
 
-void split_suffixes(const KernelScene& scene, Suffixes& suffixes, Vertices& glossy, Vertices& others) {
+void split_suffixes(const KernelScene& scene, const Vertices& x, Suffixes& suffixes, Vertices& glossy,
+                    Vertices& others) {
   const Vertices& y = suffixes.y;
   glossy.count = others.count = 0;
   for (int i = 0; i < y.count; i += width) {
@@ -55,7 +56,7 @@ void split_suffixes(const KernelScene& scene, Suffixes& suffixes, Vertices& glos
     compress_store(is_private, active & ~rough, select(shareable, Uint(0u), Uint(1u)));
     const int n = count(active & ~rough);
     for (int k = 0; k < n; ++k)
-      if (is_private[k]) make_private(suffixes, others, others.count + k);
+      if (is_private[k]) make_private(x, suffixes, others, others.count + k);
     others.count += n;
   }
 }

@@ -45,8 +45,9 @@ void scale_light_density(const Context& c, int rays, const Hits& hits, const Til
                          Suffixes& suffixes);
 
 /// Copies vertices y with a rough lobe to `glossy`, all others to `others`, where those on mirrors and
-/// glass become vertices of private paths.
-void split_suffixes(const KernelScene& scene, Suffixes& suffixes, Vertices& glossy, Vertices& others);
+/// glass become vertices of private paths. `x`: where suffixes started.
+void split_suffixes(const KernelScene& scene, const Vertices& x, Suffixes& suffixes, Vertices& glossy,
+                    Vertices& others);
 
 /// Moves the camera's vertices on mirrors and glass from `camera` to `out`.
 void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out);

@@ -13,7 +13,7 @@ namespace castray::CASTRAY_ISA {
 /// MIS weight of light found by BSDF sampling with pdf `arrival`, where light sampling has pdf
 /// `light_pdf`, both per solid angle. See Paths::arrival.
 CASTRAY_INLINE Float found_weight(Float arrival, Float light_pdf) {
-  return select(arrival >= Float(counts_all), Float(1.f), bsdf_share(light_pdf, arrival));
+  return select(arrival >= Float(counts_outside), Float(1.f), bsdf_share(light_pdf, arrival));
 }
 
 /// MIS-weighted emission of surfaces hit at `distance`; `cosine` is of the ray and the normal. For
@@ -65,7 +65,9 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       resolve_values(scene, scene.geometry.tree.triangles, material, place, parameters.value);
     const Float arrival = load(paths.arrival + i);
     if (see_emission) {
-      const Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
+      Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
+      if constexpr (features & feature_materials)
+        counts = counts & ((arrival >= Float(counts_all)) | (arrival < Float(counts_outside)));
       if (any(counts)) {
         const LightRegions& regions = scene.lights.regions;
         Float relative(1.f);

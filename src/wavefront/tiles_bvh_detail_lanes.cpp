@@ -1,4 +1,5 @@
 #include "geometry/tree_geometry_lanes.h"
+#include "wavefront/light_paths_lanes.h"
 #include "wavefront/render_tiles_lanes.h"
 #include "wavefront/tiles_lanes.h"
 
@@ -7,6 +8,12 @@ namespace castray::CASTRAY_ISA {
 void render_tiles_bvh_detail(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
                              void* scratch, TileResult& result) {
   render_tiles<TreeGeometry, feature_materials | feature_detail>(scene, options, job, scratch, result);
+}
+
+uint64_t trace_light_paths_bvh_detail(const KernelScene& scene, const KernelOptions& options,
+                                      const LightPathJob& job, void* scratch, const SplatSink& sink) {
+  return trace_light_paths<TreeGeometry, feature_materials | feature_detail>(scene, options, job, scratch,
+                                                                             sink);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -43,9 +43,15 @@ struct Workplace {
   }
   TileResult result() {
     return {
-        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0, 0};
+        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0,
+        0};
   }
 };
+
+/// Splats are spread over their pixels, and no sample's part to clamp.
+bool traces_light_paths(const RenderOptions& options, const Plan& plan) {
+  return plan.light_paths && options.jitter && !options.clamp_indirect;
+}
 
 KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   KernelOptions k{};
@@ -57,6 +63,7 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   k.most_indirect =
       static_cast<float>(options.clamp_indirect.value_or(std::numeric_limits<double>::infinity()));
   k.mis = plan.mis;
+  k.light_paths = traces_light_paths(options, plan);
   k.suffixes = plan.suffixes;
   k.light_points = plan.light_points;
   // from then on so many grids lie over each other that none can be told
@@ -117,6 +124,7 @@ class WavefrontRun {
         scene_(scene),
         options_(kernel_options(job.options, plan)),
         render_tiles_(kernel.render_tiles[plan.features]),
+        trace_light_paths_(options_.light_paths ? kernel.trace_light_paths[plan.features] : nullptr),
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
         row_locks_(static_cast<std::size_t>(bands_)) {
     for (int i = 0; i < job.threads; ++i) workplaces_.emplace_back(kernel);
@@ -138,6 +146,7 @@ class WavefrontRun {
           render_tiles_(scene_, options_, job, workplace.scratch.get(), result);
           add(job, result, map, film, stats);
         }
+      if (trace_light_paths_) trace_light_paths(row, s, workplace, film, stats);
     }
     stats.rays += result.rays;
   }
@@ -196,10 +205,49 @@ class WavefrontRun {
     }
   }
 
+  /// A band's part of a sample's light paths, one for each pixel of the full image.
+  void trace_light_paths(int row, std::uint64_t sample, Workplace& workplace, Film& film, RowStats& stats) {
+    struct Splats {
+      WavefrontRun& run;
+      std::uint64_t sample;
+      Film& film;
+      RowStats& stats;
+    } splats{*this, sample, film, stats};
+    const SplatSink sink{&splats, [](void* self, int count, const std::uint32_t* x, const std::uint32_t* y,
+                                     const float* const radiance[3]) {
+                           const Splats& s = *static_cast<Splats*>(self);
+                           for (int i = 0; i < count; ++i)
+                             s.run.add_splat(static_cast<int>(x[i]), static_cast<int>(y[i]), s.sample,
+                                             {radiance[0][i], radiance[1][i], radiance[2][i]}, s.film,
+                                             s.stats);
+                         }};
+    const int width = window_.full_width, height = window_.full_height;
+    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    const std::uint64_t batches = (pixels + batch_size - 1) / batch_size;
+    for (auto batch = static_cast<std::uint64_t>(row); batch < batches;
+         batch += static_cast<std::uint64_t>(bands_)) {
+      const std::uint64_t number = sample % replicate_length * batches + batch;
+      const LightPathJob job{sample, number * batch_size, batch_size, width, height};
+      stats.rays += trace_light_paths_(scene_, options_, job, workplace.scratch.get(), sink);
+      stats.light_paths += batch_size;
+    }
+  }
+
+  void add_splat(int x, int y, std::uint64_t sample, const Vec3f& radiance, Film& film, RowStats& stats) {
+    if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || radiance == Vec3f()) return;
+    if (!is_finite(radiance)) {
+      stats.nonfinite.push_back({x, y, sample});
+      return;
+    }
+    const std::lock_guard lock(row_locks_[static_cast<std::size_t>((y - window_.y0) / tile_size)]);
+    film.add_splat(x, y, radiance);
+  }
+
   Window window_;
   KernelScene scene_;
   KernelOptions options_;
   RenderTiles render_tiles_;
+  TraceLightPaths trace_light_paths_;  ///< or null
   int bands_;
   std::vector<std::mutex> row_locks_;
   std::vector<Workplace> workplaces_;
@@ -224,14 +272,15 @@ class Wavefront final : public PreparedIntegrator {
     const auto run = std::make_shared<WavefrontRun>(kernel_, data_.view, plan_, job);
     const int top = job.window.y0;
     return {
-        tile_size, true,
+        tile_size, true, traces_light_paths(job.options, plan_),
         [run, top](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film,
                    RowStats& stats) { run->render_band((y0 - top) / tile_size, samples, map, film, stats); }};
   }
 
   /// Instruction sets count rays differently in the last digit, so a near tie may fall either way.
   std::string decisions() const override {
-    return std::string(plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off") +
+    return std::string(plan_.light_paths ? "; light-paths=on" : "") +
+           (plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off") +
            (plan_.light_regions > 0 ? "; lights=learned" : "");
   }
 

@@ -23,6 +23,23 @@ Scene box_with(const std::function<void(Material&)>& change) {
   return scene;
 }
 
+/// Its lamps have sides `times` as long and as much less radiance, lower under the ceiling: what mirrors show
+/// of them is found often enough by chance for a z-test.
+Scene with_larger_lamps(Scene scene, float times) {
+  Vec3f middle;
+  for (const std::uint32_t light : scene.lights)
+    for (const std::uint32_t corner : scene.triangles[light])
+      middle += scene.positions[corner] / (3.f * static_cast<float>(scene.lights.size()));
+  for (const std::uint32_t light : scene.lights)
+    for (std::uint32_t& corner : scene.triangles[light]) {
+      const Vec3f p = middle + (scene.positions[corner] - middle) * times - Vec3f(0, 0.05f, 0);
+      corner = static_cast<std::uint32_t>(scene.positions.size());
+      scene.positions.push_back(p);
+    }
+  for (Material& m : scene.materials) m.ke = m.ke / double(times * times);
+  return scene;
+}
+
 Scene with_detail(Scene scene) {
   Image checks(2, 2);
   checks.pixels = {{1, 1, 1}, {.2f, .5f, .9f}, {.9f, .4f, .2f}, {.6f, .6f, .6f}};
@@ -63,14 +80,68 @@ TEST_CASE("the wavefront agrees with castRay on the standard scenes", "[statisti
 }
 
 TEST_CASE("the wavefront agrees with castRay on every material", "[statistical]") {
-  check_scene("mirror", box_with([](Material& m) { m.alpha = 0; }));
   check_scene("narrow", box_with([](Material& m) { m.alpha = 0.05; }));
-  check_scene("glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0; }));
   check_scene("rough glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; }));
   check_scene("black", box_with([](Material& m) { m.type = MaterialType::diffuse, m.kd = Vec3d(0); }));
-  check_scene("varnish", box_with([](Material& m) {
-                m.type = MaterialType::microfacet, m.alpha = 0, m.kd = {.6, .3, .1}, m.ks = {.05, .05, .05};
-              }));
+}
+
+TEST_CASE("mirrors and glass agree with castRay, whether their caustics come from lights or by chance",
+          "[statistical]") {
+  const auto check = [](const std::string& name, const std::function<void(Material&)>& change) {
+    const Scene scene = with_larger_lamps(box_with(change), 3);
+    const Expected expected(scene);
+    for (const Switch caustics : {Switch::on, Switch::off})
+      for (const AccelKind accel : {AccelKind::list, AccelKind::bvh}) {
+        RenderOptions options = wavefront_options(8);
+        options.caustics = caustics;
+        options.accel = accel;
+        options.reuse = {false, 8, 8, 64};
+        const std::string what = name + (caustics == Switch::on ? ", lights" : ", chance") +
+                                 (accel == AccelKind::list ? "" : ", tree");
+        expected.check(what, scene, options);
+        expected.check(what + ", plain", scene, plain(options));
+      }
+  };
+  check("mirror", [](Material& m) { m.alpha = 0; });
+  check("glass", [](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0; });
+  check("varnish", [](Material& m) {
+    m.type = MaterialType::microfacet, m.alpha = 0, m.kd = {.6, .3, .1}, m.ks = {.05, .05, .05};
+  });
+}
+
+TEST_CASE("paths from lights have castRay's mean at each depth, with two sides and fixed roulette",
+          "[statistical]") {
+  Scene scene = with_larger_lamps(box_with([](Material& m) { m.alpha = 0; }), 3);
+  for (Material& m : scene.materials) m.two_sided_emission = m.emits();
+  RenderOptions options = wavefront_options(8);
+  options.caustics = Switch::on;
+  for (const int depth : {2, 3, 4}) {
+    options.max_depth = depth;
+    RenderOptions reference = options;
+    reference.caustics = Switch::automatic;
+    Expected(scene, reference).check("depth " + std::to_string(depth), scene, options);
+  }
+  options.max_depth = 0;
+  options.rr = 0.7;
+  Expected(scene).check("fixed roulette", scene, options);
+}
+
+TEST_CASE("paths from lights take nine tenths of the relative variance of a lamp in a bulb",
+          "[statistical]") {
+  const Scene scene = standard_scene("kinds/lamp_in_bulb");
+  const auto variance_of = [&](Switch caustics) {
+    std::vector<Mean> pixels(side * side);
+    RenderOptions options = wavefront_options(16);
+    options.caustics = caustics;
+    for (options.seed = 0; options.seed < 8; ++options.seed) {
+      const std::vector<Vec3f> image = render(scene, options).film.image().pixels;
+      for (std::size_t i = 0; i < image.size(); ++i) pixels[i].add(luminance(Vec3d(image[i])));
+    }
+    double sum = 0;
+    for (const Mean& pixel : pixels) sum += pixel.variance() / (pixel.mean() * pixel.mean() + 0.01);
+    return sum;
+  };
+  CHECK(variance_of(Switch::on) < 0.1 * variance_of(Switch::off));
 }
 
 TEST_CASE("the wavefront agrees with castRay on textures, smooth normals and an environment",

@@ -4,10 +4,12 @@
 #include "castray/film.h"
 #include "core/files.h"
 #include "core/sequences.h"
+#include "film_bytes.h"
 #include "temporary_folder.h"
 #include "test_image.h"
 
 using namespace castray;
+using castray::test::bytes;
 
 namespace {
 
@@ -35,6 +37,53 @@ TEST_CASE("film sums do not depend on how samples are split and merged") {
   CHECK(parts.mean(0, 0) == whole.mean(0, 0));
   CHECK(parts.samples == whole.samples);
   CHECK(parts.count(0, 0) == 3000);
+}
+
+TEST_CASE("splats add to the mean by the number of light paths, in any order, and are in a film's file") {
+  const auto splatted = [](std::uint32_t first, std::uint32_t count) {
+    Film film = film_of(first, count);
+    film.keep_splats();
+    for (std::uint32_t i = first; i < first + count; i += 3) film.add_splat(0, 0, awkward_sample(i + 7));
+    film.add_light_paths(5 * count);
+    return film;
+  };
+  const Film whole = splatted(0, 3000);
+  Film parts = splatted(1800, 1200);
+  parts.merge(splatted(0, 900));
+  parts.merge(splatted(900, 900));
+  CHECK(bytes(parts) == bytes(whole));
+  CHECK(parts.light_paths(0, 0) == 15000);
+  Vec3d sum;
+  for (std::uint32_t i = 0; i < 3000; i += 3) sum += Vec3d(awkward_sample(i + 7));
+  CHECK(whole.mean_of_splats(0, 0).x == Approx(sum.x / 15000));
+  CHECK(whole.mean(0, 0) == film_of(0, 3000).mean(0, 0) + whole.mean_of_splats(0, 0));
+
+  const TemporaryFolder folder;
+  write_film(folder / "x.film", whole);
+  CHECK(bytes(read_film(folder / "x.film")) == bytes(whole));
+  CHECK(read_film(folder / "x.film").mean(0, 0) == whole.mean(0, 0));
+}
+
+TEST_CASE("the means of replicates have their splats") {
+  const auto replicate = [](std::uint64_t index, float value, float splat) {
+    Film film(Window{10, 9, 0, 0, 10, 9}, 1);
+    film.keep_splats();
+    for (int y = 0; y < 9; ++y)
+      for (int x = 0; x < 10; ++x) {
+        film.add(x, y, {value, value, value});
+        film.add_splat(x, y, {splat, splat, splat});
+      }
+    film.add_light_paths(90);
+    film.samples = {{index * replicate_length, 1}};
+    film.keep_replicates();
+    return film;
+  };
+  Film film = replicate(0, 1, 0.5f);
+  film.merge(replicate(1, 2, 0.25f));
+  const std::vector<Vec3d> means = film.replicate_means(film.blocks());
+  REQUIRE(means.size() == 2);
+  CHECK(means[0].x == Approx(1.5));
+  CHECK(means[1].x == Approx(2.25));
 }
 
 TEST_CASE("films that share a sample are refused") {

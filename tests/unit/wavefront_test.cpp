@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/sequences.h"
+#include "film_bytes.h"
 #include "test_scenes.h"
 #include "wavefront/choose_kernel.h"
 
@@ -95,6 +96,49 @@ TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") 
     for (int y = 6; y < 29; ++y)
       for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.film.mean(x, y));
   }
+}
+
+TEST_CASE("threads, crops, sample ranges and instruction sets do not show in caustics by light paths") {
+  const Scene scene = standard_scene("kinds/lamp_in_bulb");
+  RenderOptions options = small("auto");
+  options.threads = 1;
+  const RenderResult whole = render(scene, options);
+  CHECK(whole.film.light_paths(0, 0) >= 4 * 45 * 37);
+  CHECK_THAT(whole.film.key, Catch::Contains("; light-paths=on"));
+  options.threads = 3;
+  CHECK(bytes(render(scene, options).film) == bytes(whole.film));
+
+  options.samples = SampleRange{3, 1};
+  Film merged = render(scene, options).film;
+  options.samples = SampleRange{0, 3};
+  merged.merge(render(scene, options).film);
+  CHECK(bytes(merged) == bytes(whole.film));
+
+  options.samples.reset();
+  options.crop = Window{0, 0, 11, 6, 30, 29};
+  const Film crop = render(scene, options).film;
+  for (int y = 6; y < 29; ++y)
+    for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.film.mean(x, y));
+
+  options.crop.reset();
+  for (const std::string& set : available_sets()) {
+    options.isa = set;
+    if (has_fma(set) && has_fma(whole.stats.isa))
+      CHECK(bytes(render(scene, options).film) == bytes(whole.film));
+  }
+}
+
+TEST_CASE("only scenes with smooth mirrors or glass and lamps have paths from lights") {
+  RenderOptions options = small("auto");
+  CHECK(render(standard_scene("cornell_box"), options).film.light_paths(0, 0) == 0);
+  Scene scene = standard_scene("kinds/lamp_in_bulb");
+  options.caustics = Switch::off;
+  CHECK(render(scene, options).film.light_paths(0, 0) == 0);
+  options.caustics = Switch::on;
+  CHECK(render(scene, options).film.light_paths(0, 0) > 0);
+  CHECK_THROWS_WITH(render(standard_scene("cornell_box"), options), Catch::Contains("--caustics on"));
+  options.jitter = false;
+  CHECK_THROWS_WITH(render(scene, options), Catch::Contains("--jitter off"));
 }
 
 TEST_CASE("tiles with ragged edges and moved grids give every pixel each sample once") {

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "cameras/pinhole_lanes.h"
+#include "wavefront/surfaces_lanes.h"
+#include "wavefront/trace_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// Camera rays to the vertices of light paths, and what the camera sees there.
+struct CameraConnections {
+  Paths rays;  ///< slot: the entry of the vertex
+  Hits hits;
+  Vertices seen;
+  alignas(64) UintArray x, y;      ///< pixel
+  alignas(64) FloatArray density;  ///< SeenPoint::pixels_per_solid_angle
+  alignas(64) UintArray vertex;    ///< primitive on which the vertex lies
+  VecArray<capacity> splat;
+};
+
+/// Starts a camera ray to each vertex in the image, one for each hit.
+CASTRAY_STAGE inline void aim_camera(const Context& c, const LightPathJob& job, const Vertices& vertices,
+                                     const Hits& hits, CameraConnections& out) {
+  const KernelCamera& camera = c.scene.camera;
+  const Vec position = broadcast(camera.position), one{Float(1.f), Float(1.f), Float(1.f)};
+  Paths& rays = out.rays;
+  rays.count = 0;
+  for (int i = 0; i < vertices.count; i += width) {
+    const Vec towards = load(vertices.p, i) - position;
+    const SeenPoint at = see_point(camera, towards);
+    const Mask seen =
+        first_lanes(vertices.count - i) & (length_squared(load(vertices.normal, i)) > Float(0.f)) &
+        (at.pixels_per_solid_angle > Float(0.f)) & (at.px >= Float(0.f)) & (at.py >= Float(0.f)) &
+        (at.px < Float((float)job.width)) & (at.py < Float((float)job.height));
+    const int n = rays.count;
+    compress_store(rays.o, n, seen, position);
+    compress_store(rays.d, n, seen, towards);
+    compress_store(rays.throughput, n, seen, one);
+    compress_store(rays.arrival + n, seen, Float(0.f));
+    compress_store(rays.eta2 + n, seen, Float(1.f));
+    compress_entries(rays.names, n, seen, vertices.names, i);
+    compress_store(rays.names.slot + n, seen, Uint((uint32_t)i) + lane_index());
+    compress_store(out.x + n, seen, to_uint(at.px));
+    compress_store(out.y + n, seen, to_uint(at.py));
+    compress_store(out.density + n, seen, at.pixels_per_solid_angle);
+    compress_store(out.vertex + n, seen, load(hits.primitive + i));
+    rays.count += count(seen);
+  }
+}
+
+/// Whether the camera's ray reached the vertex, where ray parameter t is 1: its hit is on the same surface,
+/// or as near as that beyond an edge.
+CASTRAY_INLINE Mask reaches(Uint found, Uint aimed_at, Float t) {
+  constexpr float nearly = 1 - 0x1p-18f;
+  return ~(found == Uint(no_hit)) & ((found == aimed_at) | (t >= Float(nearly)));
+}
+
+/// The radiance that the vertices of light paths send to the camera, as a splat each.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, const Vertices& vertices,
+                                  const Hits& hits, const float* flux, Radiance& unused,
+                                  CameraConnections& to) {
+  aim_camera(c, job, vertices, hits, to);
+  closest<Geometry>(c, to.rays, true, to.hits);
+  surfaces<Geometry, features, true>(c, to.rays, to.hits, false, to.seen, unused);
+  for (int i = 0; i < to.rays.count; i += width) {
+    const Mask active = first_lanes(to.rays.count - i);
+    const Uint entry = select(active, load(to.rays.names.slot + i), Uint(0u));
+    const Shading shading = shading_of<features>(c.scene, to.seen, i);
+    const Vec wi = gather_entries(vertices.wo, entry), local = to_local(shading.frame, wi);
+    const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
+    const Float cos_camera = abs(dot(shading.normal, load(to.seen.wo, i)));
+    const Float cos_light = max(abs(dot(shading.normal, wi)), Float(0x1p-60f));
+    const Vec d = load(to.rays.d, i);
+    const Float weight = gather(flux, gather(vertices.names.slot, entry)) * gather(vertices.eta2, entry) *
+                         load(to.density + i) * cos_camera / (cos_light * length_squared(d));
+    const Mask lit = active & reaches(load(to.hits.primitive + i), load(to.vertex + i), load(to.hits.t + i)) &
+                     shading.consistent(wi, local) & (length_squared(shading.normal) > Float(0.f));
+    const Vec splat = gather_entries(vertices.throughput, entry) * value.f_cos * weight;
+    store(to.splat, i, select(lit, splat, black()));
+  }
+}
+
+}  // namespace castray::CASTRAY_ISA

@@ -1,0 +1,87 @@
+#pragma once
+
+#include "wavefront/follow_lanes.h"
+#include "wavefront/scratch_lanes.h"
+
+// Caustics: paths from a light that specular lobes scatter first, and other lobes later. Paths from the
+// camera find them by chance only, when a specular lobe sends them to a light. So where the camera sees
+// another lobe directly this class of paths is given wholly to paths from lights, whose vertices after the
+// first chain of specular ones are each connected to the camera (Arvo 1986; Veach 1997, chapter 10, with one
+// light subpath technique for the class); paths from the camera leave out what they find of it. Paths that
+// begin with a specular lobe at the camera, and light from outside the scene, stay with the paths from the
+// camera.
+
+namespace castray::CASTRAY_ISA {
+
+/// The numbers of light paths stand in the random sequence one after the other, over all samples of a
+/// replicate.
+CASTRAY_INLINE uint32_t light_path_key(const Context& c, const LightPathJob& job) {
+  const uint32_t key = hash_once(hash_once(c.options.seed, 0x119487u), (uint32_t)(job.first >> index_bits));
+  return lane(with_epoch(Uint(key), job.sample), 0);
+}
+
+/// Emits light paths: a light chosen by power, a point of its area, and a direction by the cosine. Their
+/// throughput is the colour of what they carry, over its greatest component; `flux` is that component, by
+/// slot.
+CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob& job, Paths& out,
+                                            float* flux) {
+  LightList lights = c.scene.lights;
+  lights.cut_count = 0;
+  lights.regions = {};
+  lights.by_solid_angle = false;
+  const Vec zero = black();
+  const Receiver anywhere = receiving_point(lights.regions, zero, zero, Mask(false));
+  const uint32_t key = light_path_key(c, job);
+  out.count = 0;
+  for (int i = 0; i < job.count; i += width) {
+    const Uint entry = Uint((uint32_t)i) + lane_index();
+    const Uint index = Uint((uint32_t)job.first & ((1u << index_bits) - 1)) + entry;
+    const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, PathBlocks::camera);
+    const Numbers<4> choice = draw<4>(c.options.sobol, {Uint(key), index}, PathBlocks::choice(0));
+    const LightPoint point = sample_light(lights, anywhere, choice.u[0], choice.u[1], n.u[0], n.u[1]);
+    const Mask back = point.two_sided & (choice.u[2] < Float(0.5f));
+    const Vec normal = select(back, -point.normal, point.normal);
+    const Vec emitted = point.weight * select(point.two_sided, Float(2 * pi), Float(pi));
+    const Float most = max_component(emitted);
+    const Mask shines = first_lanes(job.count - i) & (most > Float(0.f));
+    const int k = out.count;
+    compress_store(out.o, k, shines, fma(normal, point.error, point.p));
+    compress_store(out.d, k, shines, to_world(make_frame(normal), cosine_hemisphere(n.u[2], n.u[3])));
+    compress_store(out.throughput, k, shines, emitted * (Float(1.f) / most));
+    compress_store(out.arrival + k, shines, Float(0.f));
+    compress_store(out.eta2 + k, shines, Float(1.f));
+    compress_store(out.names.slot + k, shines, entry);
+    compress_store(out.names.key + k, shines, Uint(key));
+    compress_store(out.names.index + k, shines, index);
+    compress_store(out.names.light_u + k, shines, Float(0.f));
+    compress_store(out.names.light_v + k, shines, Float(0.f));
+    store(flux + i, most * Float(1.f / ((float)job.width * (float)job.height)));
+    out.count += count(shines);
+  }
+}
+
+/// Traces light paths to their ends, and gives their splats to the sink.
+template <class Geometry, uint32_t features>
+CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const KernelOptions& options,
+                                          const LightPathJob& job, void* scratch, const SplatSink& sink) {
+  Scratch& s = *static_cast<Scratch*>(scratch);
+  const TileJob no_tile{};
+  Context c{scene, options, no_tile, s.ends, world_key(options, job.sample)};
+  s.ends.fill();
+  start_light_paths(c, job, s.paths, s.flux);
+  for (uint32_t vertex = 1; s.paths.count > 0 && may_have_edges(options, vertex + 1); ++vertex) {
+    closest<Geometry>(c, s.paths, false, s.hits);
+    surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+    if (vertex > 1) {
+      CameraConnections& to = s.to_camera;
+      connect_camera<Geometry, features>(c, job, s.vertices, s.hits, s.flux, s.radiance, to);
+      const float* const splats[3] = {to.splat.x, to.splat.y, to.splat.z};
+      sink.add(sink.self, to.rays.count, to.x, to.y, splats);
+    }
+    scatter<features>(c, s.vertices, vertex, first_roulette_of_suffixes, s.paths,
+                      vertex == 1 ? Transport::from_light_specular : Transport::from_light);
+  }
+  return c.rays;
+}
+
+}  // namespace castray::CASTRAY_ISA
