@@ -25,9 +25,10 @@ Corners corners_of(const Scene& scene, std::uint32_t triangle) {
 /// What a few rays from the camera meet.
 struct Counts {
   int hits = 0;
-  int backs = 0;    ///< hits on the side that is not outward
-  int facing = 0;   ///< hits in front of the shining side of some light
-  int reached = 0;  ///< hits that see such a light
+  int backs = 0;       ///< hits on the side that is not outward
+  int dark_sides = 0;  ///< of lights, that are hit
+  int facing = 0;      ///< hits in front of the shining side of some light
+  int reached = 0;     ///< hits that see such a light
 };
 
 Counts count(const Scene& scene) {
@@ -56,6 +57,8 @@ Counts count(const Scene& scene) {
     }
     ++counts.hits;
     counts.backs += towards_camera < 0;
+    const Material& material = scene.material_of(hit.triangle);
+    counts.dark_sides += towards_camera < 0 && material.emits() && !material.two_sided_emission;
     counts.facing += facing;
     counts.reached += reached;
   }
@@ -77,7 +80,7 @@ std::string why_black(const Scene& scene, const RenderOptions& options) {
   if (counts.hits == 0)
     return "the camera sees nothing of the scene; look elsewhere with --look-from, --look-at";
   if (options.max_depth == 1) return "--max-depth 1 shows what emits only, and none of it is seen";
-  if (counts.reached == 0 && counts.backs == counts.hits)
+  if (counts.reached == 0 && counts.backs == counts.hits && counts.dark_sides == 0)
     return "the camera is inside a closed surface that no light enters; move it with --look-from";
   if (!scene.lights.empty() && counts.facing == 0)
     return "its lights face away from all that is seen: they shine on the side from which their corners run "

@@ -60,10 +60,14 @@ std::optional<FileFinder::Found> FileFinder::find(std::string_view name, const f
     std::ranges::replace(slashes, '\\', '/');
     if (const auto path = find_in(folder, slashes); path && slashes != reading) return Found{*path, false};
   }
-  for (const std::string& reading : names)
-    if (const std::size_t slash = reading.find_last_of("/\\"); slash != std::string::npos)
+  // As much of the path's end as is there: "textures/wood.png", else "wood.png".
+  for (std::string reading : names) {
+    std::ranges::replace(reading, '\\', '/');
+    for (std::size_t slash = reading.find('/'); slash != std::string::npos;
+         slash = reading.find('/', slash + 1))
       if (const auto path = find_in(folder, std::string_view(reading).substr(slash + 1)))
         return Found{*path, true};
+  }
   return std::nullopt;
 }
 

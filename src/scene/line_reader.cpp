@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "core/text.h"
@@ -10,16 +11,6 @@
 namespace castray {
 
 namespace {
-
-/// Takes the first line off `text`, its end included.
-std::string_view take_line(std::string_view& text) {
-  std::size_t end = 0;
-  while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
-  const std::string_view line = text.substr(0, end);
-  if (end < text.size()) end += text.substr(end).starts_with("\r\n") ? 2 : 1;
-  text.remove_prefix(end);
-  return line;
-}
 
 /// By its byte order mark, or by the zero byte of its first ASCII letters.
 bool is_utf16(std::string_view text) {
@@ -52,12 +43,25 @@ void LineReader::fail(const std::string& what) const {
   throw InputError(where, what);
 }
 
+/// Takes the first line off the text, its end included. A text of CRs alone is looked through for LF once.
+std::string_view LineReader::take_line() {
+  if (text_.data() > line_feed_ || !line_feed_)
+    line_feed_ = text_.data() + std::min(text_.find('\n'), text_.size());
+  const auto before_line_feed = static_cast<std::size_t>(line_feed_ - text_.data());
+  const std::size_t end = std::min(text_.substr(0, before_line_feed).find('\r'), before_line_feed);
+  const std::string_view line = text_.substr(0, end);
+  const std::size_t whole =
+      end + (end < text_.size()) + (end + 1 == before_line_feed && end + 1 < text_.size());
+  text_.remove_prefix(whole);
+  return line;
+}
+
 void LineReader::join_continued_lines() {
   joined_.clear();
   while (line_.ends_with('\\') && !text_.empty()) {
     joined_ += line_.substr(0, line_.size() - 1);
     joined_ += ' ';
-    line_ = take_line(text_);
+    line_ = take_line();
     ++lines_used_;
   }
   joined_ += line_;
@@ -68,7 +72,7 @@ void LineReader::join_continued_lines() {
 bool LineReader::next_line() {
   while (!text_.empty()) {
     line_number_ += lines_used_;
-    line_ = take_line(text_);
+    line_ = take_line();
     if (line_number_ == 0) line_number_ = 1;
     lines_used_ = 1;
     line_begin_ = line_.data();

@@ -43,9 +43,11 @@ class LineReader {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
+  std::string_view take_line();
   void join_continued_lines();
 
   std::string_view text_;
+  const char* line_feed_ = nullptr;  ///< the next one in text_, or its end; null: not looked for yet
   std::string_view line_;             ///< what is left of the line
   const char* line_begin_ = nullptr;  ///< of the whole line; null where it is continued
   const char* word_begin_ = nullptr;  ///< of the word that was read last

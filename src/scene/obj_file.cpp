@@ -65,7 +65,7 @@ class ObjReader {
     const std::string_view key = lines_.word();
     if (key == "v")
       read_position();
-    else if (key == "f")
+    else if (key == "f" || key == "fo")  // "fo" in files of old
       read_face();
     else if (key == "vn")
       read_normal();

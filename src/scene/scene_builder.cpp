@@ -144,6 +144,7 @@ void SceneBuilder::add(Mesh&& mesh) {
 
 void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
   const std::size_t before = mesh_.triangles.size();
+  if (before > 0 && std::ranges::find(keep, false) == keep.end()) return;
   keep_marked(mesh_.triangles, keep);
   keep_marked(mesh_.triangle_material, keep);
   keep_marked(mesh_.triangle_normals, keep);
@@ -214,6 +215,22 @@ void SceneBuilder::warn_of_rounding() {
                            moved, mesh_.triangles.size(), 100 * most));
 }
 
+void SceneBuilder::warn_of_missing_uvs() {
+  if (std::ranges::none_of(scene.materials, &Material::has_maps)) return;
+  std::vector<std::size_t> missing(scene.materials.size());
+  for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+    if (scene.triangle_uvs.empty() || scene.triangle_uvs[t][0] == Scene::no_index)
+      ++missing[scene.triangle_material[t]];
+  for (std::size_t m = 0; m < missing.size(); ++m)
+    if (missing[m] > 0 && scene.materials[m].has_maps())
+      warnings.add(
+          {scene.file.string()},
+          fmt::format("material '{}' has images, but triangles without texture coordinates: they get "
+                      "the constants alone",
+                      printable(scene.materials[m].name)),
+          Harm::changes_picture, missing[m]);
+}
+
 void SceneBuilder::drop_flat() {
   std::vector<bool> keep(mesh_.triangles.size());
   for (std::size_t t = 0; t < keep.size(); ++t) {
@@ -240,6 +257,7 @@ Scene SceneBuilder::finish() {
   scene.triangle_uvs = std::move(mesh_.triangle_uvs);
   scene.colors = std::move(mesh_.colors);
   scene.triangle_colors = std::move(mesh_.triangle_colors);
+  warn_of_missing_uvs();
   scene.warnings = warnings.take();
   for (Material& m : scene.materials)  // an image that is black everywhere is no light
     if (mean_emission(scene, m) == Vec3d()) m.ke = {};

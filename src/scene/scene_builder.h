@@ -50,6 +50,7 @@ class SceneBuilder {
   void find_scene_space();
   void round_positions();
   void warn_of_rounding();
+  void warn_of_missing_uvs();
   void drop_flat();  ///< of those that rounding has made flat, too
   void keep_triangles(const std::vector<bool>& keep);
 

@@ -139,6 +139,9 @@ TEST_CASE("a black image comes with its reason") {
   const Mesh turned(lamp_room("8//1 7//1 6//1 5//1"), lamp_materials);
   CHECK(turned.render(view).err.find("black") == std::string::npos);
   CHECK(brightest(turned.image()) > 0.1f);
+  const Mesh lamp_alone("mtllib m.mtl\nusemtl lamp\n" + square + "f 4 3 2 1\n", lamp_materials);
+  CHECK_THAT(lamp_alone.render({"--look-from", "0,0,3", "--look-at", "0,0,0"}).err,
+             Contains("the image is black: its lights face away"));
   CHECK_THAT(turned.render({"--look-from", "0,1,6", "--look-at", "0,1,9"}).err,
              Contains("the image is black: the camera sees nothing of the scene"));
   CHECK_THAT(turned.render(with({"--max-depth", "1", "--crop", "0,31,32,32"})).err,

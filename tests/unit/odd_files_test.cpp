@@ -24,6 +24,8 @@ struct Loaded {
     Image image(1, 1);
     image.pixels = {{0.5f, 0.25f, 0.125f}};
     write_image(folder / "Wood Grain.pfm", image);
+    std::filesystem::create_directory(folder / "textures");
+    write_image(folder / "textures/oak.pfm", image);
     scene = load_scene(folder / "o.obj");
     const std::string prefix = (folder / "").string();
     for (const SceneWarning& warning : scene.warnings) {
@@ -50,6 +52,9 @@ struct Case {
 };
 
 std::string face(const std::string& before) { return before + three + "f 1 2 3\n"; }
+std::string textured_face(const std::string& before) {
+  return before + three + "vt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+}
 
 const std::vector<Case> cases = {
     {"no library",
@@ -161,17 +166,34 @@ const std::vector<Case> cases = {
      dark,
      {"m.mtl:3: map_Kd: not an image format that is read: t.dds"}},
     {"a texture elsewhere",
-     {{"o.obj", face("mtllib m.mtl\nusemtl m\n")},
+     {{"o.obj", textured_face("mtllib m.mtl\nusemtl m\n")},
       {"m.mtl", "newmtl m\nmap_Kd -s 2 2 /home/author/tex/wood grain.pfm\n"}},
      {1, 1, 1},
      {},
      {"m.mtl:2: map_Kd: /home/author/tex/wood grain.pfm is not there; Wood Grain.pfm is used"}},
     {"a texture elsewhere, of Windows",
-     {{"o.obj", face("mtllib m.mtl\nusemtl m\n")},
+     {{"o.obj", textured_face("mtllib m.mtl\nusemtl m\n")},
       {"m.mtl", "newmtl m\nmap_Kd \"D:\\tex\\Wood Grain.pfm\" # one\n"}},
      {1, 1, 1},
      {},
      {"m.mtl:2: map_Kd: \"D:\\tex\\Wood Grain.pfm\" # one is not there; Wood Grain.pfm is used"}},
+    {"a texture in a folder beside the file, elsewhere on the author's disk",
+     {{"o.obj", textured_face("mtllib m.mtl\nusemtl m\n")},
+      {"m.mtl", "newmtl m\nmap_Kd D:\\project\\textures\\oak.pfm\n"}},
+     {1, 1, 1},
+     {},
+     {"m.mtl:2: map_Kd: D:\\project\\textures\\oak.pfm is not there; textures/oak.pfm is used"}},
+    {"images without texture coordinates",
+     {{"o.obj", face("mtllib m.mtl\nusemtl m\n") + "f 1 2 3\n"},
+      {"m.mtl", dark_mtl + "map_Kd Wood Grain.pfm\n"}},
+     dark,
+     {"o.obj: material 'm' has images, but triangles without texture coordinates: they get the constants "
+      "alone "
+      "(2 times)"}},
+    {"faces of old files",
+     {{"o.obj", "mtllib m.mtl\nusemtl m\n" + three + "fo 1 2 3\n"}, {"m.mtl", dark_mtl}},
+     dark,
+     {}},
     {"a comment that ends in a backslash",
      {{"o.obj", face("# C:\\files\\\nmtllib m.mtl\nusemtl m\n")}, {"m.mtl", dark_mtl}},
      dark,
