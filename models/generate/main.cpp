@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <ostream>
 
-#include "core/files.h"
 #include "cli/tool_main.h"
-#include "generate/shapes.h"
+#include "core/files.h"
+#include "generate/leaves.h"
 
 namespace castray {
 
@@ -17,12 +17,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_obj(const Shape& shape, const std::string& title, const fs::path& file) {
+bool is_leaves(std::string_view shape) { return shape.ends_with("leaves"); }
+
+/// The material of leaves; where they are squares, FILE_mask.png says what of them is there.
+void write_leaf_material(const Shape& shape, const fs::path& obj) {
+  std::string text = "newmtl leaf\nKd 0.2 0.45 0.1\n";
+  if (!shape.uvs.empty()) {
+    const std::string mask = obj.stem().string() + "_mask.png";
+    write_image(fs::path(obj).replace_filename(mask), leaf_mask(64), {.tone = {ToneCurve::Kind::linear}});
+    text += "map_d -clamp on " + mask + "\n";
+  }
+  write_file(fs::path(obj).replace_extension(".mtl"), text);
+}
+
+void write_obj(const Shape& shape, bool leaves, const std::string& title, const fs::path& file) {
   write_file(file, [&](std::ostream& out) {
     out << "# " << title << '\n';
+    if (leaves)
+      out << fmt::format("mtllib {}\nusemtl leaf\n",
+                         fs::path(file).replace_extension(".mtl").filename().string());
     for (const Vec3d& p : shape.positions) out << fmt::format("v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
-    for (const Index3& t : shape.triangles) out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    for (const auto& [u, v] : shape.uvs) out << fmt::format("vt {} {}\n", u, v);
+    for (const Index3& t : shape.triangles)
+      if (shape.uvs.empty())
+        out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+      else
+        out << fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   });
+  if (leaves) write_leaf_material(shape, file);
 }
 
 /// Nine little-endian floats a triangle, nothing else.
@@ -66,7 +88,7 @@ void write_scene(const std::string& shape, const fs::path& obj, const fs::path& 
     "light": {{ "type": "diffuse", "kd": [0.65, 0.65, 0.65], "ke": [47.8348, 38.5664, 31.0808] }}
   }},
   "meshes": [
-{}    {{ "obj": "{}", "material": "white",
+{}    {{ "obj": "{}", {}
       "transform": {} }}
   ]
 }}
@@ -74,7 +96,7 @@ void write_scene(const std::string& shape, const fs::path& obj, const fs::path& 
       shape,
       wall("floor.obj", "white") + wall("left.obj", "red") + wall("right.obj", "green") +
           wall("light.obj", "light"),
-      obj.filename().generic_string(), placement(shape));
+      obj.filename().generic_string(), is_leaves(shape) ? "" : "\"material\": \"white\",", placement(shape));
   write_file(file, text);
 }
 
@@ -82,8 +104,11 @@ int run(int argc, char** argv) {
   std::string shape, file;
   std::uint32_t triangles = 0, seed = 1;
   CLI::App app{"Writes a mesh made by rule.", "castray-generate"};
-  app.add_option("shape", shape, "icosphere, blob, torus_knot, terrain, hair, soup or sticks")->required();
-  app.add_option("-n,--triangles", triangles, "how many, about (the last four: exactly)")->required();
+  app.add_option("shape", shape,
+                 "icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves or cut_leaves")
+      ->required();
+  app.add_option("-n,--triangles", triangles, "how many, about (terrain, hair, soup, sticks: exactly)")
+      ->required();
   app.add_option("--seed", seed, "another mesh of the kind")->capture_default_str();
   app.add_option(
          "-o", file,
@@ -97,7 +122,7 @@ int run(int argc, char** argv) {
     if (target.extension() == ".soup") {
       write_soup(made, target);
     } else if (target.extension() == ".obj" || target.extension() == ".json") {
-      write_obj(made, title, obj);
+      write_obj(made, is_leaves(shape), title, obj);
       if (target.extension() == ".json") write_scene(shape, obj, target);
     } else {
       throw InputError({file}, "must end in .obj, .soup or .json");

@@ -9,30 +9,14 @@
 #include "castray/error.h"
 #include "core/nearest.h"
 #include "core/sequences.h"
+#include "generate/leaves.h"
+#include "generate/random.h"
 
 namespace castray {
 
 namespace {
 
 using std::numbers::pi;
-
-/// Independent numbers in [0,1), one after the other.
-class Random {
- public:
-  explicit Random(std::uint32_t seed) : seed_(hash32(seed)) {}
-  double next() { return hash32(seed_ ^ hash32(count_++)) * 0x1p-32; }
-  Vec3d in_cube() {
-    const double x = next(), y = next(), z = next();
-    return {2 * x - 1, 2 * y - 1, 2 * z - 1};
-  }
-  Vec3d on_sphere() {
-    const double z = 2 * next() - 1, phi = 2 * pi * next(), r = std::sqrt(1 - z * z);
-    return {r * std::cos(phi), r * std::sin(phi), z};
-  }
-
- private:
-  std::uint32_t seed_, count_ = 0;
-};
 
 double lattice_value(std::int64_t x, std::int64_t y, std::int64_t z, std::uint32_t seed) {
   const auto bits = [](std::int64_t i) { return static_cast<std::uint32_t>(i); };
@@ -248,9 +232,11 @@ Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t s
   if (name == "hair") return hair(triangles, seed);
   if (name == "soup") return soup(triangles, seed);
   if (name == "sticks") return sticks(triangles, seed);
-  throw InputError(
-      "no shape '" + std::string(name) + "'" +
-      suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"}));
+  if (name == "masked_leaves") return masked_leaves(std::max(1u, triangles / 2), seed);
+  if (name == "cut_leaves") return cut_leaves(std::max(1u, triangles / triangles_of_cut_leaf), seed);
+  throw InputError("no shape '" + std::string(name) + "'" +
+                   suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks",
+                                     "masked_leaves", "cut_leaves"}));
 }
 
 }  // namespace castray

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@ namespace castray {
 /// counter-clockwise side outside.
 struct Shape {
   std::vector<Vec3d> positions;
+  std::vector<std::array<float, 2>> uvs{};  ///< of the positions, or none
   std::vector<Index3> triangles;
 };
 
@@ -37,8 +39,8 @@ Shape soup(std::uint32_t triangles, std::uint32_t seed);
 /// Long thin triangles from anywhere to anywhere in the cube: their boxes fill it many times over.
 Shape sticks(std::uint32_t triangles, std::uint32_t seed);
 
-/// The shape of that name (icosphere, blob, torus_knot, terrain, hair, soup, sticks) with about `triangles`
-/// triangles. Throws InputError where there is none.
+/// The shape of that name (icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves,
+/// cut_leaves) with about `triangles` triangles. Throws InputError where there is none.
 Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t seed);
 
 }  // namespace castray

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "generate/shapes.h"
+#include "generate/leaves.h"
 
 using namespace castray;
 
@@ -45,7 +45,8 @@ TEST_CASE("generated shapes have the asked-for size") {
   CHECK(make_shape("terrain", 12345, 1).triangles.size() == 12345);
   CHECK(make_shape("hair", 5001, 1).triangles.size() == 5001);
   CHECK(make_shape("soup", 777, 1).triangles.size() == 777);
-  for (const char* name : {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks"})
+  for (const char* name : {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks",
+                           "masked_leaves", "cut_leaves"})
     CHECK(greatest_coordinate(make_shape(name, 3000, 1)) <= 1);
 }
 
@@ -57,6 +58,36 @@ TEST_CASE("generated solids are closed and face outwards") {
     CHECK(volume(shape) > 0.1);
   }
   CHECK(volume(icosphere(40)) == Approx(4.18879).epsilon(3e-3));
+}
+
+TEST_CASE("leaves behind a mask are those that are cut out") {
+  const Shape masked = masked_leaves(50, 2), cut = cut_leaves(50, 2);
+  CHECK(masked.triangles.size() == 100);
+  CHECK(masked.uvs.size() == masked.positions.size());
+  CHECK(cut.triangles.size() == 50 * triangles_of_cut_leaf);
+  const auto area = [](const Shape& shape) {
+    double sum = 0;
+    for (const Index3& t : shape.triangles) {
+      const Vec3d &a = shape.positions[t[0]], &b = shape.positions[t[1]], &c = shape.positions[t[2]];
+      sum += length(cross(b - a, c - a)) / 2;
+    }
+    return sum;
+  };
+  const Image mask = leaf_mask(64);
+  double inside = 0;
+  for (const Vec3f& texel : mask.pixels) inside += texel.x / static_cast<double>(mask.pixels.size());
+  CHECK(area(cut) == Approx(inside * area(masked)).epsilon(2e-3));
+  CHECK(mask.at(32, 32).x == 1);
+  CHECK(mask.at(0, 0).x == 0);
+  // Of each leaf, the middle of the square is inside the outline, and both face the same side.
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    const auto normal = [](const Shape& shape, std::size_t t) {
+      const Index3& c = shape.triangles[t];
+      return cross(shape.positions[c[1]] - shape.positions[c[0]],
+                   shape.positions[c[2]] - shape.positions[c[0]]);
+    };
+    CHECK(dot(normal(masked, 2 * i), normal(cut, std::size_t{triangles_of_cut_leaf} * i)) > 0);
+  }
 }
 
 TEST_CASE("the same seed gives the same shape, another one another") {
