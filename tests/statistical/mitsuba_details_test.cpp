@@ -34,7 +34,7 @@ TEST_CASE(
     const Expected expected(name);
     for (Way way : every_way(wavefront_options(scene.width, 8, 1))) {
       // shared whatever the pilot would say of these scenes
-      if (way.options.reuse.automatic)
+      if (way.options.reuse.automatic && way.options.integrator == Integrator::wavefront)
         way.options.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 64};
       const BlockScores scores =
           block_scores(blocks_of(scene, way.options, 12), expected.mean, expected.variance);
