@@ -1,6 +1,10 @@
 #include "cli/interrupt.h"
 
 #include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstring>
 
 namespace castray::cli {
 
@@ -8,13 +12,24 @@ namespace {
 
 volatile sig_atomic_t interrupt_noted = 0, snapshot_noted = 0;
 
-extern "C" void note_interrupt(int) { interrupt_noted = 1; }
+std::atomic<const char*> last_words = nullptr;
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+extern "C" void note_interrupt(int signal) {
+  if (interrupt_noted) {
+    const char* text = last_words;
+    if (text && write(STDERR_FILENO, text, std::strlen(text)) < 0) _exit(128 + signal);
+    ::signal(signal, SIG_DFL);
+    raise(signal);
+  }
+  interrupt_noted = 1;
+}
 extern "C" void note_snapshot(int) { snapshot_noted = 1; }
 
-void handle(int signal, void (*note)(int), unsigned flags) {
+void handle(int signal, void (*note)(int)) {
   struct sigaction action = {};
   action.sa_handler = note;
-  action.sa_flags = static_cast<int>(flags | SA_RESTART);
+  action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
   sigaction(signal, &action, nullptr);
 }
@@ -27,14 +42,16 @@ bool is_ignored(int signal) {
 }  // namespace
 
 void catch_interrupts() {
-  handle(SIGINT, note_interrupt, SA_RESETHAND);
-  handle(SIGTERM, note_interrupt, SA_RESETHAND);
-  if (!is_ignored(SIGHUP)) handle(SIGHUP, note_interrupt, SA_RESETHAND);
+  handle(SIGINT, note_interrupt);
+  handle(SIGTERM, note_interrupt);
+  if (!is_ignored(SIGHUP)) handle(SIGHUP, note_interrupt);
 }
+
+void write_when_killed(const char* text) { last_words = text; }
 
 bool interrupted() { return interrupt_noted != 0; }
 
-void catch_snapshot_requests() { handle(SIGUSR1, note_snapshot, 0); }
+void catch_snapshot_requests() { handle(SIGUSR1, note_snapshot); }
 
 bool snapshot_requested() {
   const bool noted = snapshot_noted != 0;

@@ -6,6 +6,9 @@ namespace castray::cli {
 /// that is ignored, as under nohup, stays ignored.
 void catch_interrupts();
 
+/// What the second signal writes to stderr before it ends the program: `text`, of static storage, or null.
+void write_when_killed(const char* text);
+
 /// Whether one came.
 bool interrupted();
 

@@ -3,54 +3,53 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <string>
+#include <algorithm>
 
 namespace castray::cli {
 
 namespace {
 
-constexpr double seconds_between_bars = 0.1, seconds_between_lines = 3;
+constexpr double seconds_between_bars = 0.1, seconds_between_objects = 0.5;
+constexpr double first_line = 1, longest_between_lines = 600;
 
-/// 75 s as "1:15".
-std::string clock_time(double seconds) {
-  const auto s = static_cast<long long>(std::llround(seconds));
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
-                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+double time_after(ProgressMode mode, double elapsed) {
+  if (mode == ProgressMode::bar) return elapsed + seconds_between_bars;
+  if (mode == ProgressMode::json) return elapsed + seconds_between_objects;
+  return elapsed + std::clamp(elapsed, first_line, longest_between_lines);
 }
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(ProgressMode mode) : mode_(mode) {
-  if (mode_ == ProgressMode::automatic)
-    mode_ = isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::lines;
-  if (mode_ == ProgressMode::lines) next_ = 1;
+ProgressMode chosen_mode(ProgressMode mode) {
+  if (mode != ProgressMode::automatic) return mode;
+  return isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::lines;
+}
+
+ProgressDisplay::ProgressDisplay(ProgressMode mode) : mode_(chosen_mode(mode)) {
+  if (mode_ == ProgressMode::lines) next_ = first_line;
 }
 
 void ProgressDisplay::update(const Progress& progress) {
   if (mode_ == ProgressMode::off) return;
-  const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   if (first_fraction_ < 0) first_fraction_ = progress.fraction;  // a resumed render does not start at 0
-  if (elapsed < next_) return;
-  const bool bar = mode_ == ProgressMode::bar;
-  next_ = elapsed + (bar ? seconds_between_bars : seconds_between_lines);
+  const double now = elapsed(), done_here = progress.fraction - first_fraction_;
+  state_ = {progress.fraction, now, std::nullopt, now > 0 ? static_cast<double>(progress.paths) / now : 0};
+  if (done_here > 0) state_.left = now * (1 - progress.fraction) / done_here;
+  if (now < next_) return;
+  next_ = time_after(mode_, now);
+  show();
+}
 
-  const double done_here = progress.fraction - first_fraction_;
-  const std::string left =
-      done_here > 0 ? clock_time(elapsed * (1 - progress.fraction) / done_here) + " left" : "? left";
-  const std::string numbers = fmt::format(
-      "{:5.1f} %  {} elapsed  {}  {:.2f} Msamples/s", 100 * progress.fraction, clock_time(elapsed), left,
-      elapsed > 0 ? static_cast<double>(progress.paths) / elapsed * 1e-6 : 0);
-  if (bar) {
-    constexpr int width = 24;
-    const int full = static_cast<int>(progress.fraction * width);
-    const std::string cells = std::string(static_cast<std::size_t>(full), '#') +
-                              std::string(static_cast<std::size_t>(width - full), '.');
-    fmt::print(stderr, "\r[{}] {}\x1b[K", cells, numbers);
+void ProgressDisplay::show() {
+  shown_ = true;
+  if (mode_ == ProgressMode::lines) {
+    fmt::print(stderr, "castray: {}\n", line_text(state_));
+  } else if (mode_ == ProgressMode::json) {
+    fmt::print(stderr, "{}\n", json_text(state_));
+  } else {
+    fmt::print(stderr, "\r{}\x1b[K", bar_text(state_, terminal_columns()));
     std::fflush(stderr);
     line_open_ = true;
-  } else {
-    fmt::print(stderr, "castray: {}\n", numbers);
   }
 }
 
@@ -59,7 +58,10 @@ void ProgressDisplay::tell(const std::string& message) {
   line_open_ = false;
 }
 
-void ProgressDisplay::finish() {
+void ProgressDisplay::finish(bool complete) {
+  state_.elapsed = elapsed();
+  if (complete) state_.fraction = 1, state_.left = 0;
+  if (shown_) show();
   if (line_open_) fmt::print(stderr, "\n");
   line_open_ = false;
 }

@@ -207,6 +207,13 @@ const RenderFlag flags[] = {
        if (!(*r.preview_seconds >= 0)) refuse(f, t, "a number of seconds");
      },
      false},
+    {"preview", "terminal|off", "terminal: the image so far, in half blocks of 24-bit colour [off]", stopping,
+     [](Request r, Text f, Text t) {
+       r.preview_in_terminal = parse_choice<bool>(f, t, {{"terminal", true}, {"off", false}});
+     },
+     false},
+    {"tev", "HOST:PORT", "show the image so far in the viewer tev, which is there: 127.0.0.1:14158", stopping,
+     [](Request r, Text, Text t) { r.tev = t; }, false},
 
     {"exposure", "STOPS", "of .ppm and .png [0]", output,
      [](Request r, Text f, Text t) { r.display.exposure = parse_number(f, t); }},
@@ -220,12 +227,13 @@ const RenderFlag flags[] = {
        r.metadata_time = parse_choice<bool>(f, t, {{"plain", false}, {"time", true}});
      },
      false},
-    {"progress", "auto|bar|lines|off", "on stderr [auto: a bar on a terminal, else lines]", output,
+    {"progress", "auto|bar|lines|json|off", "on stderr [auto: a bar on a terminal, else lines]", output,
      [](Request r, Text f, Text t) {
        r.progress = parse_choice<ProgressMode>(f, t,
                                                {{"auto", ProgressMode::automatic},
                                                 {"bar", ProgressMode::bar},
                                                 {"lines", ProgressMode::lines},
+                                                {"json", ProgressMode::json},
                                                 {"off", ProgressMode::off}});
      }},
     {"stats", "FILE", "write times and counts as JSON", output, [](Request r, Text, Text t) { r.stats = t; },

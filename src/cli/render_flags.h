@@ -15,7 +15,7 @@
 
 namespace castray::cli {
 
-enum class ProgressMode : unsigned char { automatic, bar, lines, off };
+enum class ProgressMode : unsigned char { automatic, bar, lines, json, off };
 
 /// A view given by flags; what is missing is the scene's.
 struct CameraFlags {
@@ -42,9 +42,11 @@ struct RenderRequest {
   std::optional<std::filesystem::path> checkpoint, stats;
   double checkpoint_seconds = 60;
   std::optional<double> preview_seconds;  ///< outputs are rewritten this often
-  bool until_time_limit = false;          ///< no number of samples ends the render
-  std::optional<Part> part;               ///< only these of the samples
-  std::uint64_t replicates = 0;           ///< 0: one film that does not tell its noise
+  bool preview_in_terminal = false;
+  std::optional<std::string> tev;  ///< address of a viewer
+  bool until_time_limit = false;   ///< no number of samples ends the render
+  std::optional<Part> part;        ///< only these of the samples
+  std::uint64_t replicates = 0;    ///< 0: one film that does not tell its noise
   bool resume = false, quiet = false, verbose = false;
   ProgressMode progress = ProgressMode::automatic;
 };

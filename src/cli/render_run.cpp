@@ -6,14 +6,18 @@
 
 #include "castray/error.h"
 #include "cli/interrupt.h"
+#include "cli/phase.h"
 #include "cli/temporary_folder.h"
 #include "core/files.h"
+#include "plan/job.h"
 
 namespace castray::cli {
 
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr double seconds_between_views = 0.5;
 
 double seconds_since(RenderRun::Clock::time_point begin) {
   return std::chrono::duration<double>(RenderRun::Clock::now() - begin).count();
@@ -38,10 +42,7 @@ RenderStats sum_of(const RenderStats& earlier, RenderStats later) {
 }  // namespace
 
 RenderRun::RenderRun(const RenderRequest& request, const RenderReport& report, Clock::time_point begin)
-    : request_(request),
-      report_(report),
-      begin_(begin),
-      display_(request.quiet ? ProgressMode::off : request.progress) {
+    : request_(request), report_(report), begin_(begin), display_(mode()) {
   if (request.checkpoint)
     checkpoint_.emplace(*request.checkpoint, request.checkpoint_seconds, request.resume);
 }
@@ -52,10 +53,21 @@ RenderResult RenderRun::run(const Scene& scene) {
   if (start && !request_.quiet)
     fmt::print(stderr, "castray: going on from {}: {} of {} samples per pixel are there\n",
                checkpoint_->file().string(), samples_text(start->samples_per_pixel()), request_.options.spp);
-  const PreparedScene prepared = prepare(scene, request_);
+  const PreparedScene prepared = prepare_told(scene);
+  display_ = ProgressDisplay(mode());
+  open_viewers(scene);
   RenderResult result = render_all(prepared, start ? &*start : nullptr);
-  display_.finish();
+  view(result.film);
+  terminal_.reset();
+  display_.finish(result.stats.stopped != Stopped::interrupted);
   return result;
+}
+
+ProgressMode RenderRun::mode() const { return request_.quiet ? ProgressMode::off : request_.progress; }
+
+PreparedScene RenderRun::prepare_told(const Scene& scene) const {
+  const Phase phase(mode(), fmt::format("preparing {} triangles", scene.triangles.size()));
+  return prepare(scene, request_);
 }
 
 RenderResult RenderRun::render_all(const PreparedScene& scene, const Film* start) {
@@ -76,7 +88,12 @@ RenderResult RenderRun::render_in_time(const PreparedScene& scene, const Film* s
   double writing = 0;
   if (!options.target_error) {
     if (!start || start->samples.empty()) {
-      first = render(scene, first_sample_of(options), progress, start);
+      first = render(
+          scene, first_sample_of(options),
+          [&](const Progress& p) {
+            return progress({0, p.paths, nullptr});
+          },
+          start);
       start = &first.film;
     }
     writing = seconds_to_write(*start);
@@ -111,13 +128,33 @@ void RenderRun::watch_film(const Film& film) {
     checkpoint_->save(film);
   else if (checkpoint_)
     checkpoint_->save_if_due(film);
-  if (!requested && !is_preview_due()) return;
-  for (const fs::path& output : request_.outputs)
-    if (!is_standard_output(output)) write(output, film);
-  previewed_ = Clock::now();
+  if (requested || is_preview_due()) write_snapshot(film);
   if (requested && !request_.quiet)
     display_.tell(
         fmt::format("snapshot of {} samples per pixel written", samples_text(film.samples_per_pixel())));
+  if (seconds_since(viewed_) >= seconds_between_views) view(film);
+}
+
+void RenderRun::write_snapshot(const Film& film) {
+  for (const fs::path& output : request_.outputs)
+    if (!is_standard_output(output)) write(output, film);
+  previewed_ = Clock::now();
+}
+
+/// The last view of all stays in tev; the terminal's own screen comes back.
+void RenderRun::view(const Film& film) {
+  if (!terminal_ && !tev_) return;
+  const Image image = film.image();
+  if (terminal_) terminal_->show(image);
+  if (tev_) tev_->show(image);
+  viewed_ = Clock::now();
+}
+
+void RenderRun::open_viewers(const Scene& scene) {
+  const Window window = window_of(scene.width, scene.height, request_.options);
+  if (request_.tev)
+    tev_ = std::make_unique<TevViewer>(*request_.tev, scene.name, window.width(), window.height());
+  if (request_.preview_in_terminal) terminal_ = std::make_unique<TerminalPreview>(request_.display);
 }
 
 bool RenderRun::is_preview_due() const {

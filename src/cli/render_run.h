@@ -1,12 +1,15 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <optional>
 
 #include "cli/checkpoint.h"
 #include "cli/progress.h"
 #include "cli/render_flags.h"
 #include "cli/render_report.h"
+#include "cli/terminal_preview.h"
+#include "cli/tev.h"
 
 namespace castray::cli {
 
@@ -24,6 +27,8 @@ class RenderRun {
   void save(const Film& film);
 
  private:
+  ProgressMode mode() const;
+  PreparedScene prepare_told(const Scene& scene) const;
   RenderResult render_all(const PreparedScene& scene, const Film* start);
   RenderResult render_in_time(const PreparedScene& scene, const Film* start);
   double seconds_to_write(const Film& film) const;
@@ -31,14 +36,19 @@ class RenderRun {
   /// Returns whether the render goes on.
   bool watch(const Progress& progress);
   void watch_film(const Film& film);
+  void write_snapshot(const Film& film);
   bool is_preview_due() const;
+  void open_viewers(const Scene& scene);
+  void view(const Film& film);
   void write(const std::filesystem::path& output, const Film& film) const;
 
   const RenderRequest& request_;
   const RenderReport& report_;
-  Clock::time_point begin_, previewed_ = Clock::now();
+  Clock::time_point begin_, previewed_ = Clock::now(), viewed_;
   std::optional<Checkpoint> checkpoint_;
   ProgressDisplay display_;
+  std::unique_ptr<TerminalPreview> terminal_;
+  std::unique_ptr<TevViewer> tev_;
 };
 
 }  // namespace castray::cli

@@ -40,7 +40,8 @@ struct Submit {
   /// Fills in the submission. Throws InputError where a part could not be rendered.
   void prepare(const CommonFlags& common) {
     Submission& s = submission;
-    for (const char* flag : {"part", "checkpoint", "resume", "stats", "progress", "preview-every", "samples"})
+    for (const char* flag :
+         {"part", "checkpoint", "resume", "stats", "progress", "preview-every", "preview", "tev", "samples"})
       if (render.is_given(flag))
         throw InputError(fmt::format("--{}: cannot go with submit, which decides it", flag));
     const Scene scene = load_scene(render.scene);

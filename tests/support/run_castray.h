@@ -34,6 +34,7 @@ struct RunSettings {
   std::vector<std::pair<std::string, std::string>> variables{};  ///< environment
   std::string input_file = "/dev/null";
   std::string output_file{};            ///< in place of RunResult::out
+  std::string error_file{};             ///< in place of RunResult::err
   unsigned seconds = 120;               ///< ends it with SIGALRM
   int signal = 0;                       ///< sent once it has written to stderr
   rlim_t largest_file = RLIM_INFINITY;  ///< in bytes
@@ -96,7 +97,7 @@ class CastrayProcess {
     };
     redirect(0, settings_.input_file, O_RDONLY);
     redirect(1, settings_.output_file.empty() ? out_ : settings_.output_file, O_WRONLY | O_CREAT | O_TRUNC);
-    redirect(2, err_, O_WRONLY | O_CREAT | O_TRUNC);
+    redirect(2, settings_.error_file.empty() ? err_ : settings_.error_file, O_WRONLY | O_CREAT | O_TRUNC);
     if (!settings_.folder.empty() && chdir(settings_.folder.c_str()) != 0) _exit(126);
     for (const auto& [name, value] : settings_.variables) setenv(name.c_str(), value.c_str(), 1);
     const rlimit largest_file{settings_.largest_file, settings_.largest_file};
