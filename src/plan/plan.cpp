@@ -53,6 +53,9 @@ std::string kernel_name(const Plan& plan) {
         ", lights by what is seen of them in {} {} (by a pilot, {:.2g} times as good as by bounds)",
         plan.light_regions, plan.light_regions == 1 ? "region" : "regions", plan.gain_of_regions);
   if (plan.light_paths) name += ", caustics by paths from lights";
+  if (plan.gain_of_light_paths > 0)
+    name += fmt::format("{} (by a pilot, paths from lights are {:.2g} times as efficient)",
+                        plan.light_paths ? "" : ", caustics by chance", plan.gain_of_light_paths);
   return name + (plan.mis ? ", MIS" : "");
 }
 
@@ -99,6 +102,12 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
 void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain) {
   plan.light_regions = regions;
   plan.gain_of_regions = gain;
+  plan.kernel = kernel_name(plan);
+}
+
+void choose_caustics(Plan& plan, double gain_of_light_paths) {
+  plan.light_paths = gain_of_light_paths >= 1;
+  plan.gain_of_light_paths = gain_of_light_paths;
   plan.kernel = kernel_name(plan);
 }
 

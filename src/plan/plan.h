@@ -22,6 +22,7 @@ struct Plan {
   double gain_of_regions = 1;               ///< how many times smaller they make a light sample's mean square
   bool lights_by_solid_angle = false;       ///< points on them, where that can be had
   BuildQuality build = BuildQuality::fast;  ///< of the tree
+  double gain_of_light_paths = 0;           ///< over chance, as a pilot saw it; 0: none was asked
   std::string kernel;                       ///< what was chosen, readable
   std::vector<std::string> skipped;         ///< what the scene does not need
 };
@@ -33,6 +34,10 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
 /// Lets the choice of lights know what is seen from regions, by which light samples have a mean square that
 /// many times smaller, and says so in Plan::kernel.
 void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain);
+
+/// Takes what does better, if light paths make a render that many times as efficient as leaving their
+/// caustics to chance.
+void choose_caustics(Plan& plan, double gain_of_light_paths);
 
 /// Takes what does better, if shared paths are that many times as efficient as plain ones, and says so in
 /// Plan::kernel.

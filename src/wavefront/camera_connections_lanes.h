@@ -6,15 +6,21 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// What light paths start with, by slot: greatest components.
+struct Emissions {
+  alignas(64) float flux[batch_size];      ///< of what the path carries, over the pixels of the image
+  alignas(64) float radiance[batch_size];  ///< of the light
+};
+
 /// Camera rays to the vertices of light paths, and what the camera sees there.
 struct CameraConnections {
   Paths rays;  ///< slot: the entry of the vertex
   Hits hits;
   Vertices seen;
-  alignas(64) UintArray x, y;      ///< pixel
-  alignas(64) FloatArray density;  ///< SeenPoint::pixels_per_solid_angle
-  alignas(64) UintArray vertex;    ///< primitive on which the vertex lies
-  VecArray<capacity> splat;
+  alignas(64) UintArray x, y;           ///< pixel
+  alignas(64) FloatArray density;       ///< SeenPoint::pixels_per_solid_angle
+  alignas(64) UintArray vertex;         ///< primitive on which the vertex lies
+  VecArray<capacity> splat, by_chance;  ///< as in Splats
 };
 
 /// Starts a camera ray to each vertex in the image, one for each hit.
@@ -57,7 +63,7 @@ CASTRAY_INLINE Mask reaches(Uint found, Uint aimed_at, Float t) {
 /// The radiance that the vertices of light paths send to the camera, as a splat each.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, const Vertices& vertices,
-                                  const Hits& hits, const float* flux, Radiance& unused,
+                                  const Hits& hits, const Emissions& emissions, Radiance& unused,
                                   CameraConnections& to) {
   aim_camera(c, job, vertices, hits, to);
   closest<Geometry>(c, to.rays, true, to.hits);
@@ -71,12 +77,17 @@ CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, const Ver
     const Float cos_camera = abs(dot(shading.normal, load(to.seen.wo, i)));
     const Float cos_light = max(abs(dot(shading.normal, wi)), Float(0x1p-60f));
     const Vec d = load(to.rays.d, i);
-    const Float weight = gather(flux, gather(vertices.names.slot, entry)) * gather(vertices.eta2, entry) *
-                         load(to.density + i) * cos_camera / (cos_light * length_squared(d));
+    const Uint slot = gather(vertices.names.slot, entry);
+    const Vec reflected =
+        gather_entries(vertices.throughput, entry) * value.f_cos * gather(vertices.eta2, entry);
+    const Float weight =
+        gather(emissions.flux, slot) * load(to.density + i) * cos_camera / (cos_light * length_squared(d));
     const Mask lit = active & reaches(load(to.hits.primitive + i), load(to.vertex + i), load(to.hits.t + i)) &
                      shading.consistent(wi, local) & (length_squared(shading.normal) > Float(0.f));
-    const Vec splat = gather_entries(vertices.throughput, entry) * value.f_cos * weight;
-    store(to.splat, i, select(lit, splat, black()));
+    store(to.splat, i, select(lit, reflected * weight, black()));
+    const Mask by_chance = lit & (value.pdf > Float(0.f));
+    const Float over_pdf = gather(emissions.radiance, slot) / value.pdf;
+    store(to.by_chance, i, select(by_chance, reflected * over_pdf, black()));
   }
 }
 

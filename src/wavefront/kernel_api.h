@@ -78,10 +78,16 @@ struct LightPathJob {
   int width, height;  ///< of the full image
 };
 
-/// Takes splats: radiance that light paths add to the pixels (x,y), over the number of light paths per pixel.
+/// Splats: radiance that light paths add to the pixels (x,y), over the number of light paths per pixel.
+struct Splats {
+  int count;
+  const uint32_t *x, *y;
+  const float* radiance[3];
+  const float* by_chance[3];  ///< what a path from the camera would bring that found the same path by chance
+};
 struct SplatSink {
   void* self;
-  void (*add)(void* self, int count, const uint32_t* x, const uint32_t* y, const float* const radiance[3]);
+  void (*add)(void* self, const Splats&);
 };
 
 /// Returns the number of rays traced.

@@ -21,10 +21,10 @@ CASTRAY_INLINE uint32_t light_path_key(const Context& c, const LightPathJob& job
 }
 
 /// Emits light paths: a light chosen by power, a point of its area, and a direction by the cosine. Their
-/// throughput is the colour of what they carry, over its greatest component; `flux` is that component, by
-/// slot.
+/// throughput is the colour of what they carry, over its greatest component, which
+/// `emissions` has.
 CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob& job, Paths& out,
-                                            float* flux) {
+                                            Emissions& emissions) {
   LightList lights = c.scene.lights;
   lights.cut_count = 0;
   lights.regions = {};
@@ -55,7 +55,8 @@ CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob
     compress_store(out.names.index + k, shines, index);
     compress_store(out.names.light_u + k, shines, Float(0.f));
     compress_store(out.names.light_v + k, shines, Float(0.f));
-    store(flux + i, most * Float(1.f / ((float)job.width * (float)job.height)));
+    store(emissions.flux + i, most * Float(1.f / ((float)job.width * (float)job.height)));
+    store(emissions.radiance + i, max_component(point.weight) * point.density);
     out.count += count(shines);
   }
 }
@@ -68,15 +69,18 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
   const TileJob no_tile{};
   Context c{scene, options, no_tile, s.ends, world_key(options, job.sample)};
   s.ends.fill();
-  start_light_paths(c, job, s.paths, s.flux);
+  start_light_paths(c, job, s.paths, s.light_paths);
   for (uint32_t vertex = 1; s.paths.count > 0 && may_have_edges(options, vertex + 1); ++vertex) {
     closest<Geometry>(c, s.paths, false, s.hits);
     surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
     if (vertex > 1) {
       CameraConnections& to = s.to_camera;
-      connect_camera<Geometry, features>(c, job, s.vertices, s.hits, s.flux, s.radiance, to);
-      const float* const splats[3] = {to.splat.x, to.splat.y, to.splat.z};
-      sink.add(sink.self, to.rays.count, to.x, to.y, splats);
+      connect_camera<Geometry, features>(c, job, s.vertices, s.hits, s.light_paths, s.radiance, to);
+      sink.add(sink.self, {to.rays.count,
+                           to.x,
+                           to.y,
+                           {to.splat.x, to.splat.y, to.splat.z},
+                           {to.by_chance.x, to.by_chance.y, to.by_chance.z}});
     }
     scatter<features>(c, s.vertices, vertex, first_roulette_of_suffixes, s.paths,
                       vertex == 1 ? Transport::from_light_specular : Transport::from_light);

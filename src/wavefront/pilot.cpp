@@ -121,12 +121,79 @@ TileFigures try_tile(const KernelOptions& options, const Tile& tile, const Rende
           {relative_variance(alone, brightness), alone.cost}};
 }
 
+/// Plain paths on one tile, per pixel and sample.
+struct PlainFigures {
+  Vec3d brightness;
+  Figures figures;
+};
+
+PlainFigures try_plain(KernelOptions plain, const Tile& tile, const RenderJob& render_job) {
+  plain.suffixes = 0;
+  plain.ragged = 0;
+  KernelOptions emission = plain;
+  emission.max_depth = 1;
+  TileRun run = render_tile(plain, tile, render_job);
+  subtract(run, render_tile(emission, tile, render_job));
+  const Vec3d brightness = mean_of_tile(run);
+  const double pixels = tile_pixels;
+  return {
+      brightness,
+      {relative_variance(run, brightness) * samples / pixels, run.cost / (replicates * samples * pixels)}};
+}
+
+/// Sums over splats: radiance, and the second moments of a sample of that light, by light paths, one for each
+/// pixel, and by chance.
+struct SplatSums {
+  Vec3d radiance, by_light, by_chance;
+  double rays = 0;
+
+  void add(const Splats& splats) {
+    for (int i = 0; i < splats.count; ++i) {
+      const auto at = [i](const float* const(&v)[3]) { return Vec3d(v[0][i], v[1][i], v[2][i]); };
+      const Vec3d splat = at(splats.radiance), chance = at(splats.by_chance);
+      if (!is_finite(splat) || !is_finite(chance)) continue;
+      radiance += splat;
+      by_light += splat * splat;
+      by_chance += splat * chance;
+    }
+  }
+};
+
+constexpr std::size_t pilot_batches = 64;
+
+/// Means over the light paths of a pilot.
+SplatSums try_light_paths(KernelOptions options, int width, int height, int threads,
+                          const LightPathsJob& light_paths_job) {
+  options.seed = hash_combine(0x9170fu, 0u);
+  std::vector<SplatSums> batches(pilot_batches);
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::size_t i = 0; i < pilot_batches; ++i) {
+    const SplatSink sink{
+        &batches[i], [](void* self, const Splats& splats) { static_cast<SplatSums*>(self)->add(splats); }};
+    batches[i].rays =
+        static_cast<double>(light_paths_job(options, {0, i * batch_size, batch_size, width, height}, sink));
+  }
+  SplatSums means;  // in the batches' order, whatever the threads
+  constexpr double share = 1.0 / double(pilot_batches * batch_size);
+  for (const SplatSums& batch : batches) {
+    means.radiance += batch.radiance * share;
+    means.by_light += batch.by_light * share;
+    means.by_chance += batch.by_chance * share;
+    means.rays += batch.rays * share;
+  }
+  return means;
+}
+
+std::vector<Tile> tiles_of(int width, int height) {
+  const auto in_tiles = [](int pixels) { return (pixels + tile_size - 1) / tile_size; };
+  return spread_tiles(in_tiles(width), in_tiles(height));
+}
+
 }  // namespace
 
 std::optional<double> gain_of_sharing(const KernelOptions& shared, int width, int height, int threads,
                                       const RenderJob& render_job) {
-  const auto in_tiles = [](int pixels) { return (pixels + tile_size - 1) / tile_size; };
-  const std::vector<Tile> tiles = spread_tiles(in_tiles(width), in_tiles(height));
+  const std::vector<Tile> tiles = tiles_of(width, height);
   if (tiles.size() < fewest_tiles) return {};
   std::vector<TileFigures> figures(tiles.size());
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
@@ -140,6 +207,32 @@ std::optional<double> gain_of_sharing(const KernelOptions& shared, int width, in
   }
   if (!(sum.shared.error > 0) || !(sum.plain.error > 0)) return {};
   return sum.plain.error * sum.plain.cost / (sum.shared.error * sum.shared.cost);
+}
+
+std::optional<double> gain_of_light_paths(const KernelOptions& options, int width, int height, int threads,
+                                          const RenderJob& render_job, const LightPathsJob& light_paths_job) {
+  const std::vector<Tile> tiles = tiles_of(width, height);
+  if (tiles.size() < fewest_tiles) return {};
+  std::vector<PlainFigures> plain(tiles.size());
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+  for (std::size_t i = 0; i < tiles.size(); ++i) plain[i] = try_plain(options, tiles[i], render_job);
+  PlainFigures rest;  // means over the tiles, in their order
+  for (const PlainFigures& p : plain) {
+    const double share = 1.0 / static_cast<double>(tiles.size());
+    rest.brightness += p.brightness * share;
+    rest.figures.error += p.figures.error * share;
+    rest.figures.cost += p.figures.cost * share;
+  }
+  const SplatSums splats = try_light_paths(options, width, height, threads, light_paths_job);
+  if (!(max_component(splats.radiance) > 0)) return {};
+  double by_light = 0, by_chance = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double brightness = rest.brightness[c] + splats.radiance[c];
+    by_light += splats.by_light[c] / (brightness * brightness + 0.01);
+    by_chance += splats.by_chance[c] / (brightness * brightness + 0.01);
+  }
+  return (rest.figures.error + by_chance) * rest.figures.cost /
+         ((rest.figures.error + by_light) * (rest.figures.cost + splats.rays));
 }
 
 }  // namespace castray

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -21,5 +22,17 @@ using RenderJob = std::function<void(const KernelOptions&, const TileJob&, TileR
 /// samples is in any image.
 std::optional<double> gain_of_sharing(const KernelOptions& shared, int width, int height, int threads,
                                       const RenderJob& render_job);
+
+/// The rays of one job of light paths, whose splats go to the sink. Called likewise.
+using LightPathsJob =
+    std::function<std::uint64_t(const KernelOptions&, const LightPathJob&, const SplatSink&)>;
+
+/// Efficiency with paths from lights over that without, by a pilot of plain paths and of light paths. The
+/// variance of a pixel that chance would have is computed from the light paths: each says how much a path
+/// from the camera would bring that finds the same one. So caustics that are too rare for a pilot to find are
+/// not missed. A function of the same things as above. None if the image is too small, or if no light path
+/// reaches it.
+std::optional<double> gain_of_light_paths(const KernelOptions& options, int width, int height, int threads,
+                                          const RenderJob& render_job, const LightPathsJob& light_paths_job);
 
 }  // namespace castray

@@ -16,7 +16,7 @@ struct Scratch {
   Chains chains;
   alignas(64) uint32_t left_to_light_paths[3 * batch_size];  ///< see Context
   CameraConnections to_camera;
-  alignas(64) float flux[batch_size];  ///< of light paths
+  Emissions light_paths;
   ShadowRays shadow_rays;
   Radiance radiance;
   Suffixes suffixes;

@@ -207,19 +207,18 @@ class WavefrontRun {
 
   /// A band's part of a sample's light paths, one for each pixel of the full image.
   void trace_light_paths(int row, std::uint64_t sample, Workplace& workplace, Film& film, RowStats& stats) {
-    struct Splats {
+    struct Receiver {
       WavefrontRun& run;
       std::uint64_t sample;
       Film& film;
       RowStats& stats;
-    } splats{*this, sample, film, stats};
-    const SplatSink sink{&splats, [](void* self, int count, const std::uint32_t* x, const std::uint32_t* y,
-                                     const float* const radiance[3]) {
-                           const Splats& s = *static_cast<Splats*>(self);
-                           for (int i = 0; i < count; ++i)
-                             s.run.add_splat(static_cast<int>(x[i]), static_cast<int>(y[i]), s.sample,
-                                             {radiance[0][i], radiance[1][i], radiance[2][i]}, s.film,
-                                             s.stats);
+    } receiver{*this, sample, film, stats};
+    const SplatSink sink{&receiver, [](void* self, const Splats& splats) {
+                           const Receiver& r = *static_cast<Receiver*>(self);
+                           const auto& [red, green, blue] = splats.radiance;
+                           for (int i = 0; i < splats.count; ++i)
+                             r.run.add_splat(static_cast<int>(splats.x[i]), static_cast<int>(splats.y[i]),
+                                             r.sample, {red[i], green[i], blue[i]}, r.film, r.stats);
                          }};
     const int width = window_.full_width, height = window_.full_height;
     const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
@@ -265,6 +264,8 @@ class Wavefront final : public PreparedIntegrator {
     if (job.options.max_depth == 1) return;
     if (job.options.lights == LightSampling::automatic && data_.lights.nodes() > 1)
       as_pilot([&] { learn_lights(scene, job); });
+    if (job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_))
+      as_pilot([&] { settle_caustics(job); });
     if (job.options.reuse.automatic) as_pilot([&] { settle_sharing(job); });
   }
 
@@ -314,17 +315,47 @@ class Wavefront final : public PreparedIntegrator {
     data_.use(std::move(regions), scene);
   }
 
+  /// What pilots render with.
+  class PilotJobs {
+   public:
+    PilotJobs(const Wavefront& wavefront, int threads) : wavefront_(wavefront) {
+      for (int i = 0; i < threads; ++i) workplaces_.emplace_back(wavefront.kernel_);
+    }
+    RenderJob tiles() {
+      return [this](const KernelOptions& options, const TileJob& tile, TileResult& result) {
+        wavefront_.kernel_.render_tiles[wavefront_.plan_.features](wavefront_.data_.view, options, tile,
+                                                                   scratch(), result);
+      };
+    }
+    LightPathsJob light_paths() {
+      return [this](const KernelOptions& options, const LightPathJob& job, const SplatSink& sink) {
+        return wavefront_.kernel_.trace_light_paths[wavefront_.plan_.features](wavefront_.data_.view, options,
+                                                                               job, scratch(), sink);
+      };
+    }
+
+   private:
+    void* scratch() { return workplaces_[static_cast<std::size_t>(omp_get_thread_num())].scratch.get(); }
+
+    const Wavefront& wavefront_;
+    std::vector<Workplace> workplaces_;
+  };
+
+  /// Keeps paths from lights unless a pilot says that chance does better.
+  void settle_caustics(const Job& job) {
+    PilotJobs jobs(*this, job.threads);
+    const std::optional<double> gain =
+        gain_of_light_paths(kernel_options(job.options, plan_), job.window.full_width, job.window.full_height,
+                            job.threads, jobs.tiles(), jobs.light_paths());
+    if (gain) choose_caustics(plan_, *gain);
+  }
+
   /// Keeps shared paths unless a pilot says that plain ones do better.
   void settle_sharing(const Job& job) {
-    std::vector<Workplace> workplaces;
-    for (int i = 0; i < job.threads; ++i) workplaces.emplace_back(kernel_);
-    const RenderTiles render_tiles = kernel_.render_tiles[plan_.features];
-    const std::optional<double> gain = gain_of_sharing(
-        kernel_options(job.options, plan_), job.window.full_width, job.window.full_height, job.threads,
-        [&](const KernelOptions& options, const TileJob& tile, TileResult& result) {
-          void* scratch = workplaces[static_cast<std::size_t>(omp_get_thread_num())].scratch.get();
-          render_tiles(data_.view, options, tile, scratch, result);
-        });
+    PilotJobs jobs(*this, job.threads);
+    const std::optional<double> gain =
+        gain_of_sharing(kernel_options(job.options, plan_), job.window.full_width, job.window.full_height,
+                        job.threads, jobs.tiles());
     if (gain) choose_by_pilot(plan_, *gain);
   }
 

@@ -68,6 +68,59 @@ TEST_CASE("to the pilot, what pixels gather costs less than rays, and BSDFs to e
   CHECK(gain(1000, 4000, 4000) < 0.95 * gain(1000, 4000, 0));
 }
 
+namespace {
+
+/// Light paths of which each tenth brings one splat of this radiance, that chance would find as `by_chance`.
+LightPathsJob pretended_light_paths(float radiance, float by_chance, std::uint64_t rays_of_path) {
+  return [=](const KernelOptions&, const LightPathJob& job, const SplatSink& sink) {
+    const std::uint32_t pixel = 3;
+    for (int i = 0; i < job.count; ++i)
+      if ((job.first + static_cast<std::uint64_t>(i)) % 10 == 0)
+        sink.add(
+            sink.self,
+            {1, &pixel, &pixel, {&radiance, &radiance, &radiance}, {&by_chance, &by_chance, &by_chance}});
+    return rays_of_path * static_cast<std::uint64_t>(job.count);
+  };
+}
+
+}  // namespace
+
+TEST_CASE("the pilot's gain of light paths is the ratio of all variances times that of all costs") {
+  const double noise = 0.3 * 0.3 / 3, plain_rays = 5;
+  for (const float by_chance : {0.1f, 10.f, 1000.f})
+    for (const std::uint64_t rays : {std::uint64_t{1}, std::uint64_t{20}}) {
+      const auto gain =
+          gain_of_light_paths(sharing(), 512, 512, 2,
+                              pretended(9, 0.3f, 0, 0, static_cast<std::uint64_t>(plain_rays * tile_pixels)),
+                              pretended_light_paths(2, by_chance, rays));
+      REQUIRE(gain);
+      const double splats = 1 / (1.2 * 1.2 + 0.01), rest = noise / 1.01;
+      const double chance = 0.1 * 2 * by_chance * splats, light = 0.1 * 4 * splats;
+      const double expected =
+          (rest + chance) * plain_rays / ((rest + light) * (plain_rays + static_cast<double>(rays)));
+      CHECK(*gain == Approx(expected).epsilon(0.02));
+    }
+  const RenderJob job = pretended(9, 0.3f, 0, 0, 320);
+  CHECK_FALSE(gain_of_light_paths(sharing(), 512, 512, 1, job, pretended_light_paths(0, 1, 1)));
+  CHECK_FALSE(gain_of_light_paths(sharing(), 56, 64, 1, job, pretended_light_paths(1, 1, 1)));
+}
+
+TEST_CASE(
+    "paths from lights bring the caustics of small lamps by default, and chance what black mirrors throw") {
+  RenderOptions options;
+  options.width = options.height = 64;
+  options.spp = 1;
+  CHECK_THAT(render(standard_scene("kinds/glass_ball_small_lamp"), options).film.key,
+             Catch::Contains("; light-paths=on"));
+  Scene scene = standard_scene("kinds/facing_mirrors");
+  for (Material& m : scene.materials)
+    if (m.type == MaterialType::conductor) m.reflectance = {0.01, 0.01, 0.01};
+  const Film film = render(scene, options).film;
+  CHECK_THAT(film.key, !Catch::Contains("light-paths"));
+  options.caustics = Switch::off;
+  CHECK((render(scene, options).film.image().pixels == film.image().pixels));
+}
+
 TEST_CASE("what the camera sees of emitters does not count in the pilot, nor does what is not finite") {
   const RenderJob quiet = pretended(0.1f, 0.2f, 0, 1000, 1000), loud = pretended(0.1f, 0.2f, 100, 1000, 1000);
   const auto expected = gain_of_sharing(sharing(), 256, 256, 1, quiet);
@@ -111,7 +164,9 @@ TEST_CASE(
   CHECK_THAT(render(box, options).film.key, Catch::EndsWith("sharing=on"));
   CHECK(alone.stats.pilot_seconds > 0);
   CHECK(alone.stats.render_seconds > alone.stats.pilot_seconds);
-  CHECK(render(mirrors, plain).stats.pilot_seconds == 0);
+  RenderOptions nothing_to_choose = plain;
+  nothing_to_choose.caustics = Switch::on;
+  CHECK(render(mirrors, nothing_to_choose).stats.pilot_seconds == 0);
   for (RenderOptions* o : {&options, &plain}) {
     o->crop = Window{.x0 = 20, .y0 = 30, .x1 = 33, .y1 = 41};
     o->samples = SampleRange{5, 1};
