@@ -14,8 +14,8 @@ namespace castray {
 /// counter-clockwise side outside.
 struct Shape {
   std::vector<Vec3d> positions;
-  std::vector<std::array<float, 2>> uvs{};  ///< of the positions, or none
   std::vector<Index3> triangles;
+  std::vector<std::array<float, 2>> uvs{};  ///< of the positions, or none
 };
 
 /// The unit sphere: an icosahedron whose edges are cut in `frequency`; 20 frequency^2 triangles.
