@@ -1,14 +1,19 @@
+#include <fmt/core.h>
+
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/display_flags.h"
 #include "cli/interrupt.h"
+#include "cli/memory_limit.h"
 #include "cli/phase.h"
 #include "cli/render_command.h"
 #include "cli/render_report.h"
 #include "cli/render_run.h"
 #include "core/files.h"
+#include "plan/job.h"
 
 namespace castray::cli {
 
@@ -33,6 +38,15 @@ Scene load_told(const RenderCommand& command, const CommonFlags& common) {
   return load_scene(command.scene);
 }
 
+/// The result is written without the limit, so that it is not lost.
+RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Scene& scene) {
+  const MemoryNeed need = memory_need(window_of(scene.width, scene.height, request.options));
+  if (request.verbose) fmt::print(stderr, "castray: memory: {}\n", need.text());
+  std::optional<MemoryLimit> limit;
+  if (request.memory_limit) limit.emplace(*request.memory_limit, need);
+  return run.run(scene);
+}
+
 int render_scene(const RenderCommand& command, const CommonFlags& common) {
   const RenderRun::Clock::time_point begin = RenderRun::Clock::now();
   catch_snapshot_requests();
@@ -46,7 +60,7 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
   RenderRun run(request, report, begin);
   if (!request.quiet) warn_of_darkening(request.display.tone), report.print_scene(request.verbose);
 
-  report.result = run.run(scene);
+  report.result = run_limited(run, request, scene);
   run.save(report.result.film);
   report.total_seconds = seconds_since(begin);
   if (request.stats) write_file(*request.stats, report.json());

@@ -6,6 +6,7 @@
 
 #include "castray/error.h"
 #include "cli/display_flags.h"
+#include "cli/memory_limit.h"
 #include "cli/values.h"
 #include "core/files.h"
 #include "core/nearest.h"
@@ -184,6 +185,9 @@ const RenderFlag flags[] = {
            f, t,
            {{"auto", BuildQuality::automatic}, {"fast", BuildQuality::fast}, {"best", BuildQuality::best}});
      }},
+    {"memory-limit", "SIZE",
+     "end with an error rather than render with more, as in 4G; -v tells what is needed", machine,
+     [](Request r, Text f, Text t) { r.memory_limit = parse_bytes(f, t); }, false},
     {"generic", nullptr, "run the kernel that can do everything, whatever the scene needs", machine,
      [](Request r, Text f, Text t) { r.options.generic = parse_on_off(f, t); }},
 

@@ -43,10 +43,11 @@ struct RenderRequest {
   double checkpoint_seconds = 60;
   std::optional<double> preview_seconds;  ///< outputs are rewritten this often
   bool preview_in_terminal = false;
-  std::optional<std::string> tev;  ///< address of a viewer
-  bool until_time_limit = false;   ///< no number of samples ends the render
-  std::optional<Part> part;        ///< only these of the samples
-  std::uint64_t replicates = 0;    ///< 0: one film that does not tell its noise
+  std::optional<std::uint64_t> memory_limit;  ///< bytes
+  std::optional<std::string> tev;             ///< address of a viewer
+  bool until_time_limit = false;              ///< no number of samples ends the render
+  std::optional<Part> part;                   ///< only these of the samples
+  std::uint64_t replicates = 0;               ///< 0: one film that does not tell its noise
   bool resume = false, quiet = false, verbose = false;
   ProgressMode progress = ProgressMode::automatic;
 };

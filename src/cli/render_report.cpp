@@ -52,8 +52,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 /// Flags that change neither samples nor how they are shown.
 const std::set<std::string> no_part_of_the_image = {
-    "threads",  "checkpoint", "stats",  "checkpoint-every", "resume",  "time-limit",
-    "progress", "metadata",   "strict", "preview-every",    "preview", "tev"};
+    "threads",  "checkpoint", "stats",         "checkpoint-every", "resume", "time-limit",  "progress",
+    "metadata", "strict",     "preview-every", "preview",          "tev",    "memory-limit"};
 
 }  // namespace
 
