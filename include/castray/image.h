@@ -66,6 +66,7 @@ struct Noise {
   Image variance;  ///< of each value, such that errors of different pixels can be taken for uncorrelated
   double freedom =
       std::numeric_limits<double>::infinity();  ///< of the variance of 8x8 pixels; infinite: exact
+  bool of_halves = false;                       ///< the values are stored as half floats
 };
 
 /// Pixels as a file stores them, top row first, the channels of a pixel side by side. Alpha, where there is

@@ -44,7 +44,7 @@ class Measurement {
     for (std::size_t c = 0; c < contenders_.size(); ++c) estimate_cost(c);
     for (std::size_t c = 0; c < contenders_.size(); ++c) choose_budgets(c);
     for (std::uint64_t seed = 1; seed <= plan_.seeds; ++seed) measure_all(seed);
-    for (BenchCurve& curve : scene_.curves) summarize(curve);
+    for (std::size_t c = 0; c < contenders_.size(); ++c) summarize(scene_.curves[c], contenders_[c]);
     scene_.equal_seconds = plan_.equal_seconds.value_or(common_seconds());
     for (std::size_t c = 0; c < contenders_.size(); ++c) measure_equal_time(c);
     scene_.crop = plan_.crop.value_or(worst_window(scene_, mask_));
@@ -115,19 +115,21 @@ class Measurement {
     return median(std::move(values));
   }
 
-  static std::optional<double> median_process_seconds(const std::vector<BenchRun>& runs) {
-    std::vector<double> values;
-    for (const BenchRun& run : runs)
-      if (run.process_seconds) values.push_back(*run.process_seconds);
-    if (values.empty()) return std::nullopt;
-    return median(std::move(values));
+  /// Of the whole process of the run whose render took the median time, so that the two belong together.
+  static std::optional<double> process_seconds_of_median(BenchPoint& point, const Contender& contender) {
+    std::vector<double> seconds;
+    for (const BenchRun& run : point.runs) seconds.push_back(run.seconds);
+    BenchRun& run = point.runs[median_index(seconds)];
+    if (!run.process_seconds && contender.process_seconds)
+      run.process_seconds = contender.process_seconds(point.spp, run.seed);
+    return run.process_seconds;
   }
 
-  static void summarize(BenchCurve& curve) {
+  static void summarize(BenchCurve& curve, const Contender& contender) {
     std::vector<TimeAndError> medians;
     for (BenchPoint& point : curve.points) {
       point.seconds = median_of(point.runs, &BenchRun::seconds);
-      point.process_seconds = median_process_seconds(point.runs);
+      point.process_seconds = process_seconds_of_median(point, contender);
       point.relmse = median_of(point.runs, &BenchRun::relmse);
       point.mse = median_of(point.runs, &BenchRun::mse);
       point.relmse_everywhere = median_of(point.runs, &BenchRun::relmse_everywhere);

@@ -31,6 +31,8 @@ struct Contender {
   ContenderKind kind = ContenderKind::configuration;
   std::string detail;
   std::function<Rendering(std::uint64_t spp, std::uint64_t seed)> render;
+  /// Runs the whole process and returns its seconds, where `render` does not tell them; empty: not measured.
+  std::function<double(std::uint64_t spp, std::uint64_t seed)> process_seconds = {};
 };
 
 struct BenchPlan {

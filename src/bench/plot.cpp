@@ -10,7 +10,7 @@ namespace castray {
 
 namespace {
 
-constexpr double left = 64, right = 150, top = 40, bottom = 50;
+constexpr double left = 56, top = 36, bottom = 46;
 constexpr int colours = 8;
 
 /// One logarithmic axis: values low..high, both powers of ten, map to from..to.
@@ -134,6 +134,14 @@ std::string labels(const std::vector<PlotSeries>& series, const Axis& x, const A
   return text;
 }
 
+/// Pixels for the names beside the plot.
+double room_of_names(const std::vector<PlotSeries>& series) {
+  constexpr double marker = 28, letter = 6.5;  // about, of 12 pixels' height
+  std::size_t longest = 4;
+  for (const PlotSeries& one : series) longest = std::max(longest, one.name.size());
+  return std::min(marker + letter * static_cast<double>(longest), plot_width / 2.0);
+}
+
 }  // namespace
 
 std::string escape_markup(const std::string& text) {
@@ -168,7 +176,7 @@ std::string log_log_plot(const std::string& title, const std::vector<PlotSeries>
       errors.include(point.error);
     }
   }
-  const Axis x = make_axis(seconds, left, plot_width - right);
+  const Axis x = make_axis(seconds, left, plot_width - room_of_names(series));
   const Axis y = make_axis(errors, plot_height - bottom, top);
   std::string text = fmt::format("<g class=\"plot\">\n<text class=\"title\" x=\"{}\" y=\"22\">{}</text>\n",
                                  left, escape_markup(title));

@@ -20,7 +20,7 @@ struct PlotSeries {
 /// error are left out.
 std::string log_log_plot(const std::string& title, const std::vector<PlotSeries>& series);
 
-inline constexpr int plot_width = 640, plot_height = 420;
+inline constexpr int plot_width = 480, plot_height = 340;
 
 /// The CSS that the plots need, light and dark.
 std::string plot_style();

@@ -25,7 +25,7 @@ struct BenchPoint {
   std::uint64_t spp = 0;
   std::vector<BenchRun> runs;
   double seconds = 0;
-  std::optional<double> process_seconds;
+  std::optional<double> process_seconds;  ///< of the run of median seconds
   double relmse = 0, mse = 0, relmse_everywhere = 0;
   double efficiency = 0;  ///< 1 / (relmse * seconds)
 };
@@ -60,7 +60,7 @@ struct BenchScene {
   double counted = 1;          ///< share of the pixels that count
   Image reference_image;
   double equal_seconds = 0;
-  Window crop;  ///< what the pictures show
+  Window crop;  ///< what the pictures show enlarged
   std::vector<BenchCurve> curves;
 };
 

@@ -20,10 +20,13 @@ constexpr const char* page_style = R"(
 body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:64rem;margin:auto;padding:1rem}
 h1{font-size:1.6rem}h2{margin-top:3rem;border-top:1px solid var(--line);padding-top:1rem}
 .soft,figcaption{color:var(--soft);font-size:.85rem}code{font-size:.85em;overflow-wrap:anywhere}
-.scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem}
+.scroll{overflow-x:auto}th:first-child,td:first-child{position:sticky;left:0;background:var(--paper)}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem}
 th,td{padding:.25rem .7rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
-th:first-child,td:first-child{text-align:left}svg{max-width:100%;height:auto}
-.pictures{display:flex;flex-wrap:wrap;gap:1rem}figure{margin:0;width:14rem}figure img{width:100%;image-rendering:pixelated;display:block}
+th:first-child,td:first-child{text-align:left}svg{width:100%;max-width:46rem;height:auto}
+.pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(15rem,1fr));gap:1.5rem 1rem}
+figure{margin:0;max-width:24rem}figcaption{margin-top:.4rem}figure img{width:100%;display:block;outline:1px solid var(--line)}figure .part{margin-top:.4rem;image-rendering:pixelated}
+.whole{position:relative}.whole span{position:absolute;box-sizing:border-box;border:2px solid #ff3bd0;outline:1px solid #000}
+@media(max-width:40rem){body{padding:.6rem}h1{font-size:1.3rem}h2{margin-top:2rem}th,td{padding:.25rem .45rem}figure{max-width:none}}
 .bar{display:inline-block;height:.7em;background:var(--bar);vertical-align:middle}
 )";
 
@@ -63,26 +66,40 @@ std::string points_table(const BenchScene& scene) {
   return text + "</table></div>\n";
 }
 
+std::string slope_text(const PowerLaw& fit) {
+  if (!fit.is_fitted) return "\u2013";
+  return fmt::format("{}{:.2f}", fit.slope > 0 ? "\u2212" : "", std::abs(fit.slope));
+}
+
 std::string fits_table(const BenchScene& scene) {
   std::vector<std::string> head{"", "slope"};
   for (const double error : target_errors) head.push_back(fmt::format("seconds to {:.0e}", error));
   std::string text = "<div class=\"scroll\"><table>\n" + cells("th", head);
   for (const BenchCurve& curve : scene.curves) {
     if (curve.kind == ContenderKind::ablation || !curve.fit) continue;
-    std::vector<std::string> row{escape_markup(curve.name), fmt::format("\u2212{:.2f}", curve.fit->slope)};
+    std::vector<std::string> row{escape_markup(curve.name), slope_text(*curve.fit)};
     for (const double error : target_errors) row.push_back(number(curve.fit->seconds_to(error)));
     text += cells("td", row);
   }
   return text +
-         "</table></div>\n<p class=\"soft\">Slope of log relMSE over log seconds; times from that "
-         "line.</p>\n";
+         "</table></div>\n<p class=\"soft\">Slope of log relMSE over log seconds; times from that line. One "
+         "budget "
+         "has no slope: its times take \u22121.</p>\n";
 }
 
+/// The whole image, a frame where it is shown enlarged, and that part.
 std::string picture(const Image& image, const Window& crop, const std::string& name,
                     const std::string& numbers) {
+  const auto percent = [](int part, int whole) { return 100.0 * part / whole; };
+  const std::string frame =
+      fmt::format("left:{:.2f}%;top:{:.2f}%;width:{:.2f}%;height:{:.2f}%", percent(crop.x0, image.width),
+                  percent(crop.y0, image.height), percent(crop.width(), image.width),
+                  percent(crop.height(), image.height));
   return fmt::format(
-      "<figure><img alt=\"{0}\" src=\"{1}\"><figcaption><b>{0}</b><br>{2}</figcaption></figure>\n",
-      escape_markup(name), data_address(cropped(image, crop)), numbers);
+      "<figure><div class=\"whole\"><img alt=\"{0}\" src=\"{1}\"><span style=\"{4}\"></span></div>"
+      "<img class=\"part\" alt=\"{0}, the framed part enlarged\" src=\"{2}\">"
+      "<figcaption><b>{0}</b><br>{3}</figcaption></figure>\n",
+      escape_markup(name), data_address(image), data_address(cropped(image, crop)), numbers, frame);
 }
 
 std::string pictures(const BenchScene& scene) {
@@ -132,8 +149,9 @@ std::string section(const BenchScene& scene) {
               ? fmt::format("Errors are those of the {:.1f} % of the pixels that see no emitter directly.",
                             100 * scene.counted)
               : "Errors are those of all pixels.";
-  text += fmt::format("</p>\n<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n{2}</svg>\n",
-                      plot_width, plot_height, log_log_plot(scene.name, series_of(scene)));
+  text += fmt::format(
+      "</p>\n<svg viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"error over time\">\n{2}</svg>\n",
+      plot_width, plot_height, log_log_plot(scene.name, series_of(scene)));
   return text + points_table(scene) + fits_table(scene) + pictures(scene) + ablation(scene) + details(scene);
 }
 

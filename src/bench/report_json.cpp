@@ -39,7 +39,9 @@ Json curve_json(const BenchCurve& curve) {
   json["points"] = Json::array();
   for (const BenchPoint& point : curve.points) json["points"].push_back(point_json(point));
   if (curve.fit) {
-    json["fit"] = {{"slope", -curve.fit->slope}, {"relmse_at_1s", curve.fit->constant}};
+    json["fit"] = {{"slope", curve.fit->is_fitted ? nlohmann::ordered_json(-curve.fit->slope)
+                                                  : nlohmann::ordered_json()},
+                   {"relmse_at_1s", curve.fit->constant}};
     for (const double error : target_errors)
       json["seconds_to"][fmt::format("{:.0e}", error)] = optional_number(curve.fit->seconds_to(error));
   }

@@ -41,7 +41,8 @@ std::string fits_table(const BenchScene& scene) {
                       "relMSE", "FLIP");
   for (const BenchCurve& curve : scene.curves) {
     if (curve.kind == ContenderKind::ablation || !curve.fit) continue;
-    text += fmt::format("  {:<26} {:>7.2f}", curve.name, -curve.fit->slope);
+    text += fmt::format("  {:<26} {:>7}", curve.name,
+                        curve.fit->is_fitted ? fmt::format("{:.2f}", -curve.fit->slope) : "-");
     for (const double error : target_errors)
       text += fmt::format(" {:>9}", seconds_text(curve.fit->seconds_to(error)));
     if (const auto& equal = curve.equal_time)

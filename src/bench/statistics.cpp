@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace castray {
 
@@ -9,6 +10,15 @@ double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+std::size_t median_index(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto middle = order.begin() + static_cast<std::ptrdiff_t>((order.size() - 1) / 2);
+  std::nth_element(order.begin(), middle, order.end(),
+                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  return *middle;
 }
 
 double efficiency(double error, double seconds) { return 1 / (error * seconds); }
@@ -37,7 +47,8 @@ std::optional<PowerLaw> fit_power_law(std::span<const TimeAndError> points) {
     covariance += (point.seconds - mean.seconds) * (point.error - mean.error);
   }
   PowerLaw law;
-  if (spread > 1e-12) law.slope = -covariance / spread;
+  law.is_fitted = spread > 1e-12;
+  if (law.is_fitted) law.slope = -covariance / spread;
   law.constant = std::exp(mean.error + law.slope * mean.seconds);
   return law;
 }

@@ -9,6 +9,9 @@ namespace castray {
 /// The middle value; the mean of the two middle ones for an even count. `values` must not be empty.
 double median(std::vector<double> values);
 
+/// The index of a middle one of `values`, in ascending order; the lower one for an even count.
+std::size_t median_index(const std::vector<double>& values);
+
 /// 1 / (error * seconds): what N times the samples, or N times the speed, leaves as it is or multiplies by N.
 double efficiency(double error, double seconds);
 
@@ -16,6 +19,7 @@ double efficiency(double error, double seconds);
 /// independent random numbers the slope is 1.
 struct PowerLaw {
   double slope = 1, constant = 0;
+  bool is_fitted = false;  ///< else the slope is assumed: points of one time tell none
 
   double error_at(double seconds) const;
   /// When the error is reached; nothing if it never is (slope <= 0).

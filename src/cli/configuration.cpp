@@ -89,18 +89,20 @@ Contender configuration_contender(const ConfiguredRender& where, const Configura
   request.options.height = where.height;
   if (where.threads > 0) request.options.threads = where.threads;
   const auto prepared = std::make_shared<std::optional<PreparedScene>>();  // by the first render
-  const auto render_one = [=, flags = configuration.flags](std::uint64_t spp, std::uint64_t seed) {
+  const auto render_one = [=](std::uint64_t spp, std::uint64_t seed) {
     RenderOptions now = request.options;
     now.spp = spp;
     now.seed = seed;
     if (!*prepared) *prepared = prepare(where.scene, request);
     const RenderResult result = render(**prepared, now);
-    Rendering rendering{result.film.image(), result.stats.render_seconds, {}};
-    if (seed == 1 && kind == ContenderKind::configuration)
-      rendering.process_seconds = whole_process_seconds(where, flags, spp, seed);
-    return rendering;
+    return Rendering{result.film.image(), result.stats.render_seconds, {}};
   };
-  return {configuration.name, kind, configuration.flags, render_one};
+  const auto process_seconds = [=, flags = configuration.flags](std::uint64_t spp, std::uint64_t seed) {
+    return whole_process_seconds(where, flags, spp, seed);
+  };
+  Contender contender{configuration.name, kind, configuration.flags, render_one, {}};
+  if (kind == ContenderKind::configuration) contender.process_seconds = process_seconds;
+  return contender;
 }
 
 }  // namespace castray::cli

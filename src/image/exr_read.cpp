@@ -151,7 +151,12 @@ void check_tiles(const std::string& name, const Imf::Header& header, std::size_t
     check_image_size(name, width, tile.ySize, file_length, exr_pixels_per_byte);
 }
 
-std::optional<Noise> read_noise(Imf::InputPart& part) {
+/// Whether the first of a layer's channels, and so its colours, are half floats.
+bool is_half(const Imf::InputPart& part, const ExrLayer& layer) {
+  return part.header().channels().findChannel(layer.channels.front())->type == Imf::HALF;
+}
+
+std::optional<Noise> read_noise(Imf::InputPart& part, const ExrLayer& layer) {
   const Imf::ChannelList& channels = part.header().channels();
   if (!std::all_of(exr_variances.begin(), exr_variances.end(),
                    [&](const char* variance) { return channels.findChannel(variance); }))
@@ -161,6 +166,7 @@ std::optional<Noise> read_noise(Imf::InputPart& part) {
   Noise noise{colours_of({plane.width(), plane.height(), 3, false, {}, std::move(plane.values)})};
   if (const auto* freedom = part.header().findTypedAttribute<Imf::FloatAttribute>(exr_freedom))
     noise.freedom = freedom->value();
+  noise.of_halves = is_half(part, layer);
   return noise;
 }
 
@@ -199,7 +205,7 @@ Decoded read_from(const std::string& name, std::string_view bytes, const std::st
   decoded.raster.floats = std::move(plane.values);
   drop_opaque_alpha(decoded.raster);
   decoded.metadata = texts_of(header);
-  if (layer.is_plain) decoded.noise = read_noise(part);
+  if (layer.is_plain) decoded.noise = read_noise(part, layer);
   decoded.left_out = others(layers, layer);
   Imath::Box2i all = header.displayWindow();
   all.extendBy(header.dataWindow());

@@ -85,6 +85,23 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
   CHECK_THAT(read_file(folder / "r.csv"), Contains("cornell_box,itself,peer,4,0.25,"));
 }
 
+TEST_CASE("one budget has no slope, and the process time is that of the run of median time") {
+  const TemporaryFolder folder;
+  const RunResult result =
+      run_castray({"bench", cornell, "--size", "16x16", "--cache", "cache", "--spp", "2", "--seeds", "3",
+                   "-q", "--reference-spp", "8", "--json", "r.json", "--html", "r.html"},
+                  folder.path());
+  REQUIRE(result.exit_code == 0);
+  const auto curve = nlohmann::json::parse(read_file(folder / "r.json"))["scenes"][0]["curves"][0];
+  CHECK(curve["fit"]["slope"].is_null());
+  CHECK_THAT(read_file(folder / "r.html"), Contains("<td>castray</td><td>\u2013</td>"));
+  const auto& point = curve["points"][0];
+  bool found = false;
+  for (const auto& run : point["runs"])
+    found |= run["seconds"] == point["seconds"] && run["process_seconds"] == point["process_seconds"];
+  CHECK(found);
+}
+
 TEST_CASE("bench leaves out a peer that has no equal of what a scene holds") {
   const TemporaryFolder folder;
   const RunResult result =

@@ -58,6 +58,45 @@ TEST_CASE("the z-test holds films and EXR files of replicates against each other
   CHECK_THAT(plain.err, Contains("1.pfm against 1.exr: the image does not tell its noise"));
 }
 
+TEST_CASE("references of half precision take a tenth of a film's room, and judge as well") {
+  const Renders renders;
+  for (const std::string name : {"1", "2", "other3"})
+    REQUIRE(renders.run({"convert", name + ".film", "--bits", "16", "-o", name + "half.exr"}).exit_code == 0);
+  const auto size = [&](const char* name) { return std::filesystem::file_size(renders.folder / name); };
+  CHECK(size("1half.exr") * 10 < size("1.film"));
+  CHECK_THAT(renders.run({"info", "1half.exr"}).out, Contains("of 7 degrees of freedom"));
+  for (const char* image : {"2.film", "2.exr", "2half.exr", "1.exr"}) {
+    INFO(image);
+    CHECK(renders.compare(image, "1half.exr") == 0);
+  }
+  for (const char* image : {"other3.film", "other3.exr", "other3half.exr"}) {
+    INFO(image);
+    CHECK(renders.compare(image, "1half.exr") == 1);
+  }
+}
+
+TEST_CASE("a background without noise may be rounded to half floats, and no further") {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    return run_castray(arguments, folder.path()).exit_code;
+  };
+  write_file(folder / "t.obj", "v -1 -1 0\nv 0 1 0\nv 1 -1 0\nf 1 2 3\n");
+  const auto render = [&](const std::string& sky, const std::string& name, const std::string& bits) {
+    write_file(
+        folder / "s.json",
+        R"({ "camera": { "position": [0, 0, 9], "look_at": [0, 0, 20] }, "environment": { "radiance": [)" +
+            sky + "] }, \"meshes\": [ { \"obj\": \"t.obj\" } ] }");
+    REQUIRE(run({"render", "s.json", "-q", "--size", "16x16", "--replicates", "4", "--bits", bits, "-o",
+                 name}) == 0);
+  };
+  render("0.3, 0.5003, 0.7", "half.exr", "16");
+  render("0.3, 0.5003, 0.7", "whole.exr", "auto");
+  render("0.3, 0.5023, 0.7", "brighter.exr", "16");
+  CHECK(run({"compare", "whole.exr", "half.exr", "--max", "max_error=0"}) == 1);
+  CHECK(run({"compare", "whole.exr", "half.exr", "--ztest", "0.01"}) == 0);
+  CHECK(run({"compare", "brighter.exr", "half.exr", "--ztest", "0.01"}) == 1);
+}
+
 TEST_CASE("the z-test takes PFM files with their variances beside them") {
   const TemporaryFolder folder;
   Image image = test_image(16, 16), variance(16, 16);

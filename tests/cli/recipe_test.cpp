@@ -20,8 +20,17 @@ std::vector<std::string> steps_of_workflow() {
 
 }  // namespace
 
+TEST_CASE("the workflow in README keeps the page, JUnit's file and the references, also after a failure") {
+  const std::string readme = read_file(CASTRAY_ROOT "/README.md");
+  const std::size_t upload = readme.find("uses: actions/upload-artifact");
+  REQUIRE(upload != readme.npos);
+  const std::string step = readme.substr(upload, readme.find("```", upload) - upload);
+  for (const char* part : {"if: always()", "page.html", "junit.xml", "references"})
+    CHECK_THAT(step, Catch::Contains(part));
+}
+
 // In a folder that looks like a checkout, where ./run is the program that is built already.
-TEST_CASE("the workflow in README renders and compares, and accepting makes it pass") {
+TEST_CASE("the workflow in README renders, makes the references it does not have, and compares") {
   const TemporaryFolder checkout;
   std::filesystem::create_directory_symlink(CASTRAY_ROOT "/scenes", checkout / "scenes");
   std::filesystem::create_directory_symlink(CASTRAY_ROOT "/models", checkout / "models");
@@ -34,16 +43,20 @@ TEST_CASE("the workflow in README renders and compares, and accepting makes it p
     return WEXITSTATUS(status);
   };
   const std::vector<std::string> steps = steps_of_workflow();
-  REQUIRE(steps.size() == 2);
-  CHECK(shell("sh -ec '" + steps[0] + "'") == 0);
-  CHECK(shell(steps[1]) == 2);
+  REQUIRE(steps.size() == 3);
+  const std::string &render = steps[0], &make_references = steps[1], &compare = steps[2];
+  CHECK(shell("sh -ec '" + render + "'") == 0);
+  CHECK(shell(compare) == 2);
   CHECK_THAT(read_file(checkout / "log"), Catch::Contains("references: does not exist; 'castray accept'"));
-  CHECK(shell("./run accept out references") == 0);
-  CHECK(shell(steps[1]) == 0);
+  CHECK(shell(make_references) == 0);
+  CHECK_THAT(read_file(checkout / "log"), Catch::Contains("new       references/furnace.exr"));
+  CHECK(shell(make_references) == 0);
+  CHECK(read_file(checkout / "log") == "");  // what is there stays
+  CHECK(shell(compare) == 0);
   CHECK_THAT(read_file(checkout / "log"), Catch::Contains("3 of 3 images pass"));
   CHECK(std::filesystem::exists(checkout / "page.html"));
   CHECK(std::filesystem::exists(checkout / "junit.xml"));
-  CHECK(shell("./run render scenes/cornell_lights.json --size 128x128 --replicates 16 -o "
-              "references/cornell_box.film") == 0);
-  CHECK(shell(steps[1]) == 1);
+  CHECK(shell("./run render scenes/cornell_lights.json --size 128x128 --replicates 16 --bits 16 -o "
+              "references/cornell_box.exr") == 0);
+  CHECK(shell(compare) == 1);
 }

@@ -25,9 +25,16 @@ TEST_CASE("a power law is found exactly from points on it") {
   const auto law = fit_power_law(points);
   REQUIRE(law);
   REQUIRE(law->slope == Approx(1.16));
+  REQUIRE(law->is_fitted);
   REQUIRE(law->constant == Approx(0.03));
   REQUIRE(law->error_at(2.5) == Approx(0.03 * std::pow(2.5, -1.16)));
   for (const double error : {1e-2, 1e-4}) REQUIRE(law->error_at(*law->seconds_to(error)) == Approx(error));
+}
+
+TEST_CASE("the median has an index") {
+  REQUIRE(median_index({5}) == 0);
+  REQUIRE(median_index({3, 1, 2}) == 2);
+  REQUIRE(median_index({4, 1, 3, 2}) == 3);
 }
 
 TEST_CASE("the fit is that of least squares on the logarithms") {
@@ -41,6 +48,7 @@ TEST_CASE("the fit is that of least squares on the logarithms") {
 TEST_CASE("a fit of one point takes slope 1, of none does not exist, of growing error never ends") {
   const std::vector<TimeAndError> one{{2, 0.01}};
   REQUIRE(fit_power_law(one)->slope == 1);
+  REQUIRE_FALSE(fit_power_law(one)->is_fitted);
   REQUIRE(*fit_power_law(one)->seconds_to(0.001) == Approx(20));
   const std::vector<TimeAndError> useless{{0, 1}, {1, -1e-9}};
   REQUIRE_FALSE(fit_power_law(useless));

@@ -34,7 +34,8 @@ Json constant_schema(const MaterialKey& key) {
 
 /// The schema of a material, by its descriptor.
 Json material_schema(const MaterialDescriptor& material) {
-  Json properties{{"type", {{"const", material.name}}}};
+  Json properties{
+      {"type", {{"description", "Decides which other keys there are."}, {"const", material.name}}}};
   for (const MaterialKey& key : material.keys) {
     Json property = constant_schema(key);
     if (key.parameter && key.kind != MaterialKey::Kind::image_only)
@@ -80,6 +81,20 @@ TEST_CASE("docs/materials.md has a row for each material and each of its keys") 
     INFO(key.name);
     CHECK(text.find("`" + std::string(key.name) + "`") != std::string::npos);
   }
+}
+
+TEST_CASE("the JSON Schema describes every key in words") {
+  const auto check = [](const std::string& where, const Json& object) {
+    for (const auto& [key, value] : object["properties"].items()) {
+      INFO(where << ": " << key);
+      REQUIRE(value.contains("description"));
+      CHECK(value["description"].get<std::string>().size() > 8);
+    }
+  };
+  const Json schema = ::schema();
+  check("scene", schema);
+  for (const auto& [name, definition] : schema["definitions"].items())
+    if (definition.contains("properties")) check(name, definition);
 }
 
 TEST_CASE("the JSON Schema has the keys that the parser knows, section by section") {
