@@ -46,11 +46,15 @@ int accept(const fs::path& image, const fs::path& reference) {
   }
   if (fs::exists(reference) && !fs::is_directory(reference))
     throw InputError({reference.string()}, "is not a folder, but IMAGE is");
+  bool any_film = false;
   for (const std::string& name : images_below(image)) {
+    any_film |= is_film_format(name);
     fs::create_directories((reference / name).parent_path());
     accept_file(image / name, reference / name);
   }
   fmt::print("references: {}\n", size_text(reference));
+  if (any_film)
+    fmt::print("as .exr of 'castray render --replicates 16 --bits 16', films take about a sixteenth\n");
   return 0;
 }
 

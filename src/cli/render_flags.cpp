@@ -108,11 +108,11 @@ const RenderFlag flags[] = {
      "or "
      "MPI says; {part} in names of files is its number",
      sampling, [](Request r, Text f, Text t) { r.part = parse_part(f, t); }, false},
-    {"seed", "N", "[0]", sampling,
+    {"seed", "N", "other random numbers for each [0]", sampling,
      [](Request r, Text f, Text t) { r.options.seed = parse_whole(f, t, 0, most_whole); }},
     {"replicates", "R", "share the samples out to R independent replicates, for 'castray compare --ztest'",
      sampling, [](Request r, Text f, Text t) { r.replicates = parse_whole(f, t, 1, 4096); }, false},
-    {"sampler", "sobol|independent", "[sobol]", sampling,
+    {"sampler", "sobol|independent", "Sobol's sequence or independent random numbers [sobol]", sampling,
      [](Request r, Text f, Text t) { r.options.sampler = parse_choice(f, t, sampler_names); }},
     {"jitter", "on|off", "off: every sample through the pixel's centre [on]", sampling,
      [](Request r, Text f, Text t) { r.options.jitter = parse_on_off(f, t); }},
@@ -124,7 +124,7 @@ const RenderFlag flags[] = {
      [](Request r, Text f, Text t) { r.scene.camera.position = parse_vector(f, t); }, false},
     {"look-at", "X,Y,Z", "where it looks [the scene's middle]", view,
      [](Request r, Text f, Text t) { r.scene.camera.look_at = parse_vector(f, t); }, false},
-    {"up", "X,Y,Z", "[0,1,0]", view,
+    {"up", "X,Y,Z", "the direction that is up in the image [0,1,0]", view,
      [](Request r, Text f, Text t) { r.scene.camera.up = parse_vector(f, t); }, false},
     {"fov", "DEGREES", "vertical field of view [40]", view,
      [](Request r, Text f, Text t) { r.scene.camera.fov = parse_number(f, t); }, false},
@@ -166,10 +166,10 @@ const RenderFlag flags[] = {
      [](Request r, Text f, Text t) {
        r.options.clamp_indirect = t == "off" ? std::nullopt : std::optional(parse_number(f, t));
      }},
-    {"fault", "NAME", "show a classic fault (docs/classic-faults.md) on the reference", estimator,
+    {"fault", "NAME", "a classic fault (docs/classic-faults.md) to be seen on the reference", estimator,
      [](Request r, Text f, Text t) { r.fault = parse_choice(f, t, fault_names); }},
 
-    {"threads", "N", "[the processors allowed to this process, cgroup limits read]", machine,
+    {"threads", "N", "at most so many [the processors allowed to this process, cgroup limits read]", machine,
      [](Request r, Text f, Text t) { r.options.threads = static_cast<int>(parse_whole(f, t, 1, 4096)); },
      true, 't'},
     {"isa", "auto|scalar|...", "instruction set of the kernels [auto]", machine,

@@ -113,7 +113,7 @@ NoiseTest test_all(const Window& window, double alpha, const TestBlocks& test_bl
       }
     }
   }
-  result.p = std::min(1.0, smallest);
+  result.p = std::clamp(smallest, std::numeric_limits<double>::min(), 1.0);  // "below 0" would mean nothing
   return result;
 }
 

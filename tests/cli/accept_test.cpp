@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "castray/film.h"
 #include "core/files.h"
 #include "run_castray.h"
 #include "test_image.h"
@@ -38,6 +39,10 @@ TEST_CASE("accept takes folders, makes those that are missing, and keeps varianc
                             Contains("new       references/a.variance.pfm") &&
                             Contains("new       references/sub/b.exr"));
   CHECK(run({"compare", "out", "references", "--max", "mse=0"}).exit_code == 0);
+  CHECK_THAT(first.out, !Contains("a sixteenth"));
+  std::filesystem::create_directory(folder / "films");
+  write_film(folder / "films/f.film", Film({8, 8, 0, 0, 8, 8}, 1));
+  CHECK_THAT(run({"accept", "films", "kept"}).out, Contains("a sixteenth"));
   write_image(folder / "out/sub/b.exr", test_image(12, 8, 3));
   CHECK(run({"compare", "out", "references", "--max", "mse=0"}).exit_code == 1);
   CHECK_THAT(run({"accept", "out", "references"}).out,

@@ -1,12 +1,10 @@
 // The options that an image holds are flags that render it again.
 #include <catch2/catch.hpp>
 
-#include <iterator>
-#include <sstream>
-
 #include "castray/image.h"
 #include "core/files.h"
 #include "run_castray.h"
+#include "words.h"
 
 using namespace castray;
 using Words = std::vector<std::string>;
@@ -14,11 +12,6 @@ using Words = std::vector<std::string>;
 namespace {
 
 const std::string scene = CASTRAY_ROOT "/scenes/cornell_box.json";
-
-Words words_of(const std::string& text) {
-  std::istringstream words(text);
-  return {std::istream_iterator<std::string>(words), {}};
-}
 
 }  // namespace
 
