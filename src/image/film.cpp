@@ -266,16 +266,17 @@ std::string samples_text(double samples_per_pixel) {
 }
 
 Metadata describe(const Film& film) {
+  // What the scene is, and what pilots decided; all other items are flags.
+  static constexpr std::string_view no_flags[] = {"scene", "hash", "sharing", "light-paths", "light-choice"};
   Metadata metadata;
   std::string& options = metadata["castray:options"];
   for (const std::string& item : items_of(film.key)) {
     const std::string name = item.substr(0, item.find('='));
     const std::string value(
         unescape_item(std::string_view(item).substr(std::min(name.size() + 1, item.size()))));
-    if (name == "scene" || name == "hash" || name == "seed" || name == "sharing" || name == "light-paths")
-      metadata["castray:" + name] = value;
-    if (name != "scene" && name != "hash" && name != "sharing" && name != "light-paths")
-      options += (options.empty() ? "--" : " --") + name + " " + value;
+    const bool is_flag = std::find(std::begin(no_flags), std::end(no_flags), name) == std::end(no_flags);
+    if (!is_flag || name == "seed") metadata["castray:" + name] = value;
+    if (is_flag) options += (options.empty() ? "--" : " --") + name + " " + value;
     if (name == "clamp-indirect") metadata["castray:biased"] = item;
   }
   metadata["castray:spp"] = samples_text(film.samples_per_pixel());

@@ -282,7 +282,7 @@ class Wavefront final : public PreparedIntegrator {
   std::string decisions() const override {
     return std::string(plan_.light_paths ? "; light-paths=on" : "") +
            (plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off") +
-           (plan_.light_regions > 0 ? "; lights=learned" : "");
+           (plan_.light_regions > 0 ? "; light-choice=learned" : "");
   }
 
   void describe(RenderStats& stats) const override {

@@ -12,6 +12,7 @@ using Words = std::vector<std::string>;
 namespace {
 
 const std::string scene = CASTRAY_ROOT "/scenes/cornell_box.json";
+const std::string with_pilots = CASTRAY_ROOT "/scenes/kinds/bright_neighbour.json";
 
 }  // namespace
 
@@ -40,4 +41,18 @@ TEST_CASE("the options that an image holds are flags that render it again, byte 
     CHECK(read_file(folder / "a.png") == read_file(folder / "b.png"));
     CHECK(read_file(folder / "a.film") == read_file(folder / "b.film"));
   }
+}
+
+TEST_CASE("what pilots decided is told beside the options, which render the image again") {
+  const TemporaryFolder folder;
+  REQUIRE(run_castray({"render", with_pilots, "-q", "--size", "64x64", "--spp", "4", "-o", "a.png"},
+                      folder.path())
+              .exit_code == 0);
+  const Metadata metadata = read_image(folder / "a.png").metadata;
+  CHECK(metadata.at("castray:light-choice") == "learned");
+  CHECK(metadata.count("castray:sharing") == 1);
+  Words again = {"render", with_pilots, "-q", "-o", "b.png"};
+  for (const std::string& word : words_of(metadata.at("castray:options"))) again.push_back(word);
+  CHECK(run_castray(again, folder.path()).exit_code == 0);
+  CHECK(read_file(folder / "a.png") == read_file(folder / "b.png"));
 }

@@ -42,7 +42,7 @@ void check_parted_room(const std::string& name, const Material& block) {
       options.isa = isa;
       options.accel = accel;
       const std::string what = name + ", " + isa + (accel == AccelKind::list ? ", list" : ", tree");
-      CHECK_THAT(render(scene, options).film.key, Catch::EndsWith("; lights=learned"));
+      CHECK_THAT(render(scene, options).film.key, Catch::EndsWith("; light-choice=learned"));
       expected.check(what + ", shared", scene, options);
       expected.check(what + ", plain", scene, plain(options));
     }
@@ -84,9 +84,9 @@ TEST_CASE("one light, and lights chosen as asked for, need no pilot of lights") 
   const Scene box = standard_scene("cornell_box"),
               parted = parted_room({.name = "block", .kd = {.7, .4, .2}});
   RenderOptions options = plain(wavefront_options(1));
-  CHECK(render(box, options).film.key.find("lights=learned") == std::string::npos);
+  CHECK(render(box, options).film.key.find("light-choice=learned") == std::string::npos);
   for (const LightSampling lights : {LightSampling::area, LightSampling::tree, LightSampling::solid_angle}) {
     options.lights = lights;
-    CHECK(render(parted, options).film.key.find("lights=learned") == std::string::npos);
+    CHECK(render(parted, options).film.key.find("light-choice=learned") == std::string::npos);
   }
 }
