@@ -53,6 +53,16 @@ inline constexpr int max_image_pixels = 1 << 28;
 
 using Index3 = std::array<std::uint32_t, 3>;
 
+/// An image of the environment in latitude and longitude: its top row is at +y, its middle column at +z, and
+/// the column a quarter from the left at +x. Each texel is a patch of one radiance.
+struct EnvironmentImage {
+  int texture = -1;     ///< index into Scene::textures, or -1: none, the environment is constant
+  double scale = 1;     ///< factor of its values, >= 0
+  double rotation = 0;  ///< degrees about +y, counter-clockwise as seen from above
+
+  bool used() const { return texture >= 0; }
+};
+
 /// A scene, an immutable value once loaded.
 ///
 /// Geometry lives in *scene space*: the input is parsed in double, moved so that the middle of its bounds is
@@ -83,7 +93,8 @@ struct Scene {
 
   std::vector<Material> materials;
   std::vector<Texture> textures;
-  Vec3d environment{0, 0, 0};         ///< radiance from every direction that hits nothing
+  Vec3d environment{0, 0, 0};  ///< radiance from every direction that hits nothing; an image's mean over them
+  EnvironmentImage environment_image;
   std::vector<std::uint32_t> lights;  ///< the triangles whose material emits, ascending
 
   std::vector<RenderDefault> render_defaults;  ///< in the file's order

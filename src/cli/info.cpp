@@ -70,6 +70,12 @@ void print_geometry(const Scene& scene) {
   if (!scene.triangle_normals.empty()) fmt::print("normals    {} shading normals\n", scene.normals.size());
 }
 
+std::string environment_image_text(const Scene& scene) {
+  if (!scene.environment_image.used()) return "";
+  const Texture& image = scene.textures[static_cast<std::size_t>(scene.environment_image.texture)];
+  return fmt::format(" on average, of {}, {} x {}", printable(image.name), image.width, image.height);
+}
+
 void print_lights(const Scene& scene) {
   std::set<std::uint16_t> emitters;
   for (std::uint32_t t : scene.lights) emitters.insert(scene.triangle_material[t]);
@@ -77,7 +83,7 @@ void print_lights(const Scene& scene) {
   for (std::uint16_t m : emitters)
     fmt::print("{} {}", m == *emitters.begin() ? ":" : ",", printable(scene.materials[m].name));
   if (max_component(scene.environment) > 0)
-    fmt::print("; environment {}{}", text_of(scene.environment),
+    fmt::print("; environment {}{}{}", text_of(scene.environment), environment_image_text(scene),
                scene.default_environment ? ", as nothing in the scene emits" : "");
   fmt::print("\n");
 }

@@ -296,7 +296,11 @@ void apply_flags(const RenderRequest& request, Scene& scene) {
     throw InputError(scene.warnings.front().place, scene.warnings.front().message);
   if (request.options.width > 0) scene.width = request.options.width, scene.height = request.options.height;
   scene.camera = camera_of(flags.camera, scene);
-  if (flags.environment) scene.environment = *flags.environment, scene.default_environment = false;
+  if (flags.environment) {
+    scene.environment = *flags.environment;
+    scene.environment_image = {};
+    scene.default_environment = false;
+  }
   if (flags.two_sided_lights)
     for (Material& material : scene.materials) material.two_sided_emission |= material.emits();
 }

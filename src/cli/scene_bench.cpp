@@ -90,6 +90,7 @@ class SceneBench {
     if (flags_.mask == "none") return {};
     Scene lights = scene_;
     lights.environment = {};
+    lights.environment_image = {};
     RenderOptions options;
     options.integrator = Integrator::reference;
     options.width = result.width;

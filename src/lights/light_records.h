@@ -66,6 +66,17 @@ struct LightRegions {
   const uint32_t* node_of_primitive;  ///< of facets or triangles that emit
 };
 
+/// Light from outside the scene; see lights/environment.h.
+struct EnvironmentTable {
+  float constant[3];       ///< radiance from everywhere, or the mean of the image
+  bool shines;             ///< it is not black
+  uint32_t width, height;  ///< of the image; 0: it is constant
+  float turn;              ///< in [0,1): what is added to a direction's longitude to find its column
+  const float* radiance;   ///< red, green, blue of each texel, the row at +y first
+  const float* rows;       ///< height + 1 cumulative probabilities
+  const float* columns;    ///< width + 1 of each row
+};
+
 struct MaterialTables;
 struct TriangleTable;
 
@@ -76,9 +87,8 @@ struct LightList {
   uint32_t cut_count;       ///< 0: lights are chosen by power, not by importance
   const LightBounds* cut;   ///< nodes of the tree that together hold every light once
   const LightBounds* tree;  ///< pairs of siblings
-  float environment[3];     ///< radiance from every direction that hits nothing
-  bool has_environment;     ///< it is not black
-  bool by_solid_angle;      ///< sample rectangles uniformly in solid angle
+  EnvironmentTable environment;
+  bool by_solid_angle;  ///< sample rectangles uniformly in solid angle
   bool may_be_covered;  ///< a surface may lie so close in front of a light that segments must start at the
                         ///< light
   const MaterialTables* materials;  ///< where an image says what some light emits; else null

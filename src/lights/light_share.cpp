@@ -78,7 +78,8 @@ bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
 }  // namespace
 
 bool uses_mis(Switch mis, const Scene& scene, double bsdf_samples) {
-  return mis == Switch::automatic ? bsdf_may_be_denser(scene, bsdf_samples) : mis == Switch::on;
+  if (mis != Switch::automatic) return mis == Switch::on;
+  return scene.environment_image.used() || bsdf_may_be_denser(scene, bsdf_samples);
 }
 
 }  // namespace castray

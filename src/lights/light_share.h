@@ -26,7 +26,8 @@ T bsdf_share(T light, T bsdf) {
 }
 
 /// Whether light and BSDF sampling share emission: as asked, or automatically unless light sampling would
-/// have all of it everywhere. `bsdf_samples`: most BSDF samples of a point to one light point.
+/// have all of it everywhere, and where an image of the environment is sampled. `bsdf_samples`: most BSDF
+/// samples of a point to one light point.
 bool uses_mis(Switch mis, const Scene& scene, double bsdf_samples);
 
 }  // namespace castray

@@ -3,8 +3,8 @@
 #include "lights/area_lights_lanes.h"
 #include "materials/kernel_material.h"
 
-// The three things that stages ask of lights: sample a light, weigh a light that a ray hit, and light from
-// outside.
+// What stages ask of lights, besides light from outside (lights/environment_lanes.h): sample a light, and
+// weigh a light that a ray hit.
 
 namespace castray::CASTRAY_ISA {
 
@@ -27,16 +27,6 @@ CASTRAY_INLINE FoundLight found_light(const KernelMaterial* materials, Uint mate
   return {front | both_sides, both_sides,
           gather_vec(fields_of(materials, &KernelMaterial::value) + slot_emission, material),
           gather(materials, &KernelMaterial::light_density, material)};
-}
-
-/// Light from outside the scene, from direction d.
-struct EscapedLight {
-  Vec radiance;
-  Float density;  ///< pdf of the direction by light sampling, per solid angle; 0: it is found by such rays
-                  ///< alone
-};
-CASTRAY_INLINE EscapedLight escaped_light(const LightList& list, const Vec& /*d*/) {
-  return {broadcast(list.environment), Float(0.f)};
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -56,6 +56,15 @@ Texel texel(const Texture& texture, std::size_t index) {
   return texel;
 }
 
+float greatest_value(const Texture& texture) {
+  float greatest = 0;
+  const auto count = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      greatest = std::max(greatest, texel_channel(texture, i, channel));
+  return greatest;
+}
+
 Vec3d mean_color(const Texture& texture, const TextureMap& map) {
   const auto count = static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height);
   std::array<double, 4> mean{};

@@ -34,6 +34,9 @@ inline float texel_channel(const Texture& texture, std::size_t index, std::size_
 using Texel = std::array<float, 4>;
 Texel texel(const Texture& texture, std::size_t index);
 
+/// The greatest red, green or blue value.
+float greatest_value(const Texture& texture);
+
 /// The mean over the texture's area of what a map makes of a colour.
 Vec3d mean_color(const Texture& texture, const TextureMap& map);
 

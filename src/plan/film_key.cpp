@@ -66,6 +66,8 @@ std::uint64_t scene_hash(const Scene& scene) {
   for (const Vec3d& v :
        {camera.position, camera.forward, camera.right, camera.up, scene.center, scene.environment})
     hash.add(v);
+  if (const EnvironmentImage& image = scene.environment_image; image.used())
+    hash.add(image.texture), hash.add(image.scale), hash.add(image.rotation);
   hash.add(camera.tan_half_fov);
   hash.add(scene.unit);
   hash.add(scene.positions);

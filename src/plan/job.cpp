@@ -8,6 +8,7 @@
 
 #include "castray/error.h"
 #include "core/threads.h"
+#include "materials/texture.h"
 #include "plan/film_key.h"
 
 namespace castray {
@@ -107,6 +108,10 @@ Integrator choose_integrator(const RenderOptions& o, Fault fault) {
 
 double brightest_emission(const Scene& scene) {
   double brightest = max_component(scene.environment);
+  if (const EnvironmentImage& image = scene.environment_image; image.used())
+    brightest = std::max(
+        brightest,
+        image.scale * double{greatest_value(scene.textures[static_cast<std::size_t>(image.texture)])});
   for (const Material& material : scene.materials)
     brightest = std::max(brightest, max_component(material.ke));
   return brightest;

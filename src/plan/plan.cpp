@@ -73,6 +73,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
+  plan.environment_points = needs.environment && scene.environment_image.used() ? 16 : 0;
   plan.mis = uses_mis(options.mis, scene, std::max(1.0, double(plan.suffixes) / plan.light_points));
   plan.light_paths = may_have_light_paths(needs) && options.caustics != Switch::off;
   if (options.caustics == Switch::on && !plan.light_paths)

@@ -17,6 +17,7 @@ struct Plan {
   bool light_paths = false;                  ///< bring the caustics that the camera sees directly
   int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
   int light_points = 0;                      ///< shared by each tile
+  int environment_points = 0;                ///< likewise
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
   std::size_t light_regions = 0;             ///< from which it is known what lights are seen; 0: it is not
   double gain_of_regions = 1;               ///< how many times smaller they make a light sample's mean square

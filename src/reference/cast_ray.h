@@ -4,6 +4,7 @@
 
 #include "castray/render_options.h"
 #include "lights/area_lights.h"
+#include "lights/environment.h"
 #include "lights/light_share.h"
 #include "materials/coverage.h"
 #include "reference/estimator.h"
@@ -16,14 +17,13 @@ namespace castray {
 /// A scene as castRay sees it; the scene must outlive it.
 template <class T>
 struct SceneParts {
-  explicit SceneParts(const Scene& s)
-      : scene(s), surfaces(s), lights(s), coverage(s), environment(s.environment) {}
+  explicit SceneParts(const Scene& s) : scene(s), surfaces(s), lights(s), coverage(s), environment(s) {}
 
   const Scene& scene;
   Surfaces<T> surfaces;
   AreaLights<T> lights;
   Coverage coverage;
-  Vec3<T> environment;
+  Environment environment;
 };
 
 /// The recursive path tracer, line by line the rendering equation (Kajiya 1986)
@@ -104,7 +104,7 @@ class CastRay {
   Vec3<T> cast_ray(const Ray<T>& ray, Path& path, const Arrival& arrival) const {
     ++path.rays;
     const Hit<T> hit = accel_.closest(ray, path.there);
-    if (!hit.found()) return environment_;
+    if (!hit.found()) return escaped(ray.direction, arrival);
     Surface<T> x = surfaces_.at(hit, ray);
     segments_.place(x, hit, ray);
 
@@ -114,9 +114,18 @@ class CastRay {
     // roulette, lobe, light
     const std::array<float, 4> choice = draw(path, PathBlocks::choice(path.vertex));
     radiance += direct_light(x, path, static_cast<double>(choice[2]) + choice[3] * 0x1p-24);
+    radiance += environment_light(x, path);
     const bool clamps = options_.clamp_indirect && path.vertex == 0;
     const Vec3<T> indirect = indirect_light(x, path, T(choice[0]), T(choice[1]));
     return radiance + (clamps ? clamped(indirect, T(*options_.clamp_indirect)) : indirect);
+  }
+
+  /// Light from outside, weighted by how the ray was sampled.
+  Vec3<T> escaped(const Vec3<T>& direction, const Arrival& arrival) const {
+    const Vec3<T> radiance = environment_.radiance(direction);
+    if (!environment_.is_sampled()) return radiance;
+    if (!arrival.counts) return {};
+    return arrival.shared ? radiance * bsdf_share(environment_.pdf(direction), arrival.pdf) : radiance;
   }
 
   /// Le, weighted by how the ray was sampled.
@@ -149,6 +158,21 @@ class CastRay {
     return segments_.visible(accel_, x, y, path.there) ? radiance : Vec3<T>();
   }
 
+  /// Integral over the directions of an image of the environment, estimated in one: f Le |cos| V / pdf.
+  Vec3<T> environment_light(const Surface<T>& x, Path& path) const {
+    if (!environment_.is_sampled()) return {};
+    const std::array<float, 4> u = draw(path, PathBlocks::environment(path.vertex));
+    const EnvironmentSample<T> sample = environment_.sample(Point2<T>{T(u[0]), T(u[1])});
+    const Vec3<T> local = x.frame.to_local(sample.w);
+    if (!(sample.pdf > 0) || !x.consistent(sample.w, local)) return {};
+    Vec3<T> radiance = x.bsdf.evaluate(x.wo, local) * sample.radiance * (std::abs(local.z) / sample.pdf);
+    if (!(max_component(radiance) > 0)) return {};
+    if (mis_) radiance *= light_share(sample.pdf, x.bsdf.pdf(x.wo, local));
+    ++path.rays;
+    return accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, path.there) ? Vec3<T>()
+                                                                                        : radiance;
+  }
+
   /// Integral over all directions of light that is not direct, estimated in one: f |cos| L / pdf.
   Vec3<T> indirect_light(const Surface<T>& x, Path& path, T u_roulette, T u_lobe) const {
     const std::array<float, 4> u = draw(path, PathBlocks::direction(path.vertex));
@@ -179,7 +203,7 @@ class CastRay {
   const Surfaces<T>& surfaces_;
   const AreaLights<T>& lights_;
   const Coverage& coverage_;
-  Vec3<T> environment_;
+  const Environment& environment_;
   const Accel& accel_;
   const Textbook<T>& textbook_;
   const RenderOptions& options_;

@@ -11,6 +11,7 @@
 #include "core/nearest.h"
 #include "core/text.h"
 #include "materials/descriptor.h"
+#include "materials/environment_image.h"
 #include "scene/json_reader.h"
 #include "scene/material_reader.h"
 #include "scene/obj_mesh.h"
@@ -111,7 +112,27 @@ class SceneFileReader {
   void read_environment(const JsonNode& node) {
     const ObjectReader environment(node, "\"environment\"", keys_of("environment"));
     builder_.environment_given = true;
-    builder_.scene.environment = read_vector(environment.require("radiance"), "\"radiance\"", not_negative);
+    const JsonNode* image = environment.find("image");
+    const JsonNode* radiance = image ? environment.find("radiance") : &environment.require("radiance");
+    if (image && radiance)
+      throw InputError(radiance->key_place,
+                       "\"radiance\" or \"image\", not both; \"scale\" makes an image brighter");
+    if (radiance)
+      builder_.scene.environment = read_vector(*radiance, "\"radiance\"", not_negative);
+    else
+      read_environment_image(environment, *image);
+  }
+
+  void read_environment_image(const ObjectReader& environment, const JsonNode& image) {
+    const std::filesystem::path path = file_.parent_path() / read_string(image, "\"image\"");
+    if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));
+    Scene& scene = builder_.scene;
+    scene.environment_image.texture = builder_.add_texture(path, ColorSpace::srgb);
+    if (const JsonNode* scale = environment.find("scale"))
+      scene.environment_image.scale = read_number(*scale, "\"scale\"", not_negative);
+    if (const JsonNode* rotation = environment.find("rotation"))
+      scene.environment_image.rotation = read_number(*rotation, "\"rotation\"");
+    scene.environment = mean_environment(scene);
   }
 
   void read_materials(const JsonNode& node) {
@@ -232,7 +253,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "environment"}},
         {"camera", {"position", "look_at", "up", "fov"}},
         {"image", {"width", "height"}},
-        {"environment", {"radiance"}},
+        {"environment", {"radiance", "image", "scale", "rotation"}},
         {"map", map_keys()},
         {"mesh", {"obj", "material", "transform", "normals", "crease_angle"}},
         {"transform_step", {"scale", "rotate", "translate"}},

@@ -29,8 +29,14 @@ CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t v
   const bool may_find_lights = c.options.mis || (features & feature_materials);
   Vertices* current = &vertices;
   for (; may_have_edges(c.options, vertex + 2); ++vertex) {
-    light<Geometry, features>(c, *current, vertex, s.shadow_rays);
-    add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+    if (c.scene.lights.count > 0) {
+      light<Geometry, features>(c, *current, vertex, s.shadow_rays);
+      add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+    }
+    if (c.scene.lights.environment.width > 0) {
+      light_environment<Geometry, features>(c, *current, vertex, s.shadow_rays);
+      add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+    }
     if (vertex == 0) keep_direct(c, s);
     scatter<features>(c, *current, vertex, roulette, s.paths);
     if (s.paths.count == 0) return;

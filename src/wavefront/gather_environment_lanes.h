@@ -1,18 +1,33 @@
 #pragma once
 
-#include "lights/lights_lanes.h"
+#include "lights/environment_lanes.h"
 #include "wavefront/gather_light_lanes.h"
 #include "wavefront/suffixes_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
-/// Every pixel of a tile gathers what arrives from outside along the suffixes of the tile that escaped.
-/// `rays`: the suffixes, in the order of their tiles.
+/// What the pixels of a tile gather from a direction to the environment. Directions come from the tile's
+/// suffixes that escaped, and from environment samples: the balance heuristic over all.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void gather_direction(Context& c, const FarSender& y, const EscapedLight& light, float stratum,
+                                    Gatherers& gatherers, VisibilityScratch& s, Gathered& gathered) {
+  Transfer t;
+  transfer<Geometry, features>(c, y, gatherers, s, t);
+  const float found = ordered_sum(t.density) / stratum;
+  const float density = found + (float)c.options.environment_points * lane(light.density, 0);
+  if (!(density > 0)) return;
+  add_scaled<features>(gathered, gatherers.first, t, light.radiance * Float(1.f / density));
+}
+
+/// Every pixel of a tile gathers what arrives from outside. `rays`: the suffixes, in the order of their
+/// tiles.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_environment(Context& c, const Vertices& x, const TileBoxes* boxes,
                                       const Suffixes& suffixes, const Paths& rays, const Hits& hits,
                                       VisibilityScratch& s, Gathered& gathered) {
-  if (!c.scene.lights.has_environment) return;
+  const EnvironmentTable& environment = c.scene.lights.environment;
+  if (!environment.shines) return;
+  const auto points = (uint32_t)c.options.environment_points;
   int k = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
@@ -22,13 +37,19 @@ CASTRAY_STAGE void gather_environment(Context& c, const Vertices& x, const TileB
       if (suffix >= (tile + 1) * tile_pixels) break;
       if (hits.primitive[k] != no_hit) continue;
       const Vec w = broadcast_entry(rays.d, k);
-      Transfer t;
-      transfer<Geometry, features>(c, FarSender{w, (int)suffixes.origin[suffix] - gatherers.first}, gatherers,
-                                   s, t);
-      const float density = ordered_sum(t.density) / stratum;
-      if (!(density > 0)) continue;
-      add_scaled<features>(gathered, gatherers.first, t,
-                           escaped_light(c.scene.lights, w).radiance * Float(1.f / density));
+      gather_direction<Geometry, features>(c, {w, (int)suffixes.origin[suffix] - gatherers.first},
+                                           light_from(environment, w), stratum, gatherers, s, gathered);
+    }
+    const uint32_t key = tile_key(c, tile);
+    for (uint32_t first = 0; first < points; first += width) {
+      const Uint index = tile_index(key, c.job.sample, Uint(first) + lane_index(), points);
+      const Numbers<2> n = draw<2>(c.options.sobol, {Uint(key), index}, PathBlocks::environment(0));
+      const EnvironmentSample sample = sample_environment(environment, n.u[0], n.u[1]);
+      for (int l = 0; l < width && first + (uint32_t)l < points; ++l)
+        gather_direction<Geometry, features>(
+            c, {broadcast_lane(sample.w, l), -1},
+            {broadcast_lane(sample.light.radiance, l), Float(lane(sample.light.density, l))}, stratum,
+            gatherers, s, gathered);
     }
   }
 }

@@ -32,7 +32,8 @@ CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& s
   }
 }
 
-/// The next ray of each glossy suffix, sampled with wo towards the suffix's own pixel.
+/// The next ray of each glossy suffix, sampled with wo towards the suffix's own pixel. Light points have all
+/// of the lights' emission at y, and such rays all that arrives from outside.
 template <uint32_t features>
 CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, Paths& out) {
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
@@ -50,7 +51,7 @@ CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes&
     compress_store(out.o, k, going, load(y.p, i));
     compress_store(out.d, k, going, wi);
     compress_store(out.throughput, k, going, one);
-    compress_store(out.arrival + k, going, Float(0.f));
+    compress_store(out.arrival + k, going, Float(counts_all));
     compress_store(out.eta2 + k, going, Float(1.f));
     compress_entries(out.names, k, going, y.names, i);
     compress_store(out.names.light_u + k, going, n.u[2]);

@@ -1,7 +1,6 @@
 #include "wavefront/kernel_scene.h"
 
 #include "cameras/pinhole.h"
-#include "core/put.h"
 #include "lights/covered_lights.h"
 #include "materials/surface_values.h"
 
@@ -52,7 +51,7 @@ std::vector<std::uint32_t> pack_materials(const Scene& scene) {
 }  // namespace
 
 KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads)
-    : coverage(scene), materials(scene) {
+    : coverage(scene), materials(scene), environment(scene) {
   if (plan.list) {
     facets = make_facets(scene);
     lights = LightTable(scene, facets.facets, plan.choose_lights_by_importance, threads);
@@ -74,8 +73,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.geometry.tree.partial = partial_triangles(coverage);
   }
   view.lights.by_solid_angle = plan.lights_by_solid_angle;
-  put(view.lights.environment, scene.environment);
-  view.lights.has_environment = max_component(scene.environment) > 0;
+  view.lights.environment = environment.table();
   const std::vector<Vec3d> emission = mean_emissions(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     materials.materials[i].light_density = lights.density(scene.materials[i], emission[i]);

@@ -7,6 +7,7 @@
 #include "castray/scene.h"
 #include "geometry/facets.h"
 #include "geometry/wide_bvh.h"
+#include "lights/environment.h"
 #include "lights/light_table.h"
 #include "materials/coverage.h"
 #include "materials/kernel_materials.h"
@@ -31,6 +32,7 @@ struct KernelSceneData {
   Coverage coverage;
   KernelMaterials materials;
   LightTable lights;
+  Environment environment;
   KernelScene view{};
 };
 

@@ -6,14 +6,15 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Light sampling: a light point for each vertex, as a shadow ray with its MIS-weighted radiance.
-template <class Geometry, uint32_t features>
-CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t vertex, ShadowRays& out) {
+/// A light point for each vertex, as a shadow ray with its MIS-weighted radiance. `point_of(i)`: those of
+/// vertices i to i + width - 1.
+template <class Geometry, uint32_t features, class PointOf>
+CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, PointOf point_of,
+                                ShadowRays& out) {
   out.count = 0;
   const LightList& lights = c.scene.lights;
-  if (lights.count == 0) return;
   for (int i = 0; i < vertices.count; i += width) {
-    const LightPoint point = vertex_light_points(c, vertices, i, vertex, !(features & feature_materials));
+    const LightPoint point = point_of(i);
     const LightSegment segment = connect_light(point, load(vertices.p, i));
     const Vec wi = segment.towards * segment.inverse_distance;
     Vec p = load(vertices.p, i), normal = load(vertices.normal, i), f_cos;
@@ -33,7 +34,9 @@ CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t ve
     Float share(1.f);
     if (c.options.mis) {
       Float density = point.density;
-      if (lights.regions.tree) density = density * relative_density(lights.regions, p, wi, point.node);
+      if (lights.regions.tree)
+        density =
+            select(point.infinite, density, density * relative_density(lights.regions, p, wi, point.node));
       share = light_share(density, pdf * segment.solid_angle);
     }
     const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
@@ -46,6 +49,23 @@ CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t ve
     compress_store(out.slot + n, lit, load(vertices.names.slot + i));
     out.count += count(lit);
   }
+}
+
+/// Light sampling: a point of one light for each vertex.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t vertex, ShadowRays& out) {
+  shadow_rays<Geometry, features>(
+      c, vertices,
+      [&](int i) { return vertex_light_points(c, vertices, i, vertex, !(features & feature_materials)); },
+      out);
+}
+
+/// Light sampling: a direction to the environment for each vertex.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void light_environment(const Context& c, const Vertices& vertices, uint32_t vertex,
+                                     ShadowRays& out) {
+  shadow_rays<Geometry, features>(
+      c, vertices, [&](int i) { return vertex_environment_points(c, vertices, i, vertex); }, out);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -1,5 +1,6 @@
 #include "wavefront/light_points_lanes.h"
 
+#include "lights/environment_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/shading_lanes.h"
 
@@ -16,6 +17,16 @@ LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i
       receiving_point(c.scene.lights.regions, load(vertices.p, i), load(vertices.normal, i), one_sided);
   return sample_light(c.scene.lights, receiver, n.u[2], n.u[3], load(vertices.names.light_u + i),
                       load(vertices.names.light_v + i));
+}
+
+LightPoint vertex_environment_points(const Context& c, const Vertices& vertices, int i, uint32_t vertex) {
+  const Numbers<2> n =
+      draw<2>(c.options.sobol, sequence_of(vertices.names, i), PathBlocks::environment(vertex));
+  const EnvironmentSample sample = sample_environment(c.scene.lights.environment, n.u[0], n.u[1]);
+  const Float density = sample.light.density;
+  const Float inverse = select(density > Float(0.f), Float(1.f) / density, Float(0.f));
+  return {sample.w,   -sample.w, sample.light.radiance * inverse, density, Mask(false), Float(0.f),
+          Mask(true), Uint(0u)};
 }
 
 /// Sums over the tile's points what is seen from their regions.

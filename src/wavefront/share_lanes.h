@@ -43,7 +43,7 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     bound_tile(x, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
-    find_origins(x, tile * tile_pixels, c.scene.lights.has_environment, s.suffixes.origins[tile]);
+    find_origins(x, tile * tile_pixels, c.scene.lights.environment.shines, s.suffixes.origins[tile]);
   }
   gather_light<Geometry, features>(c, x, s.boxes, s.suffixes, s.lights, s.visibility, s.gathered);
   start_suffixes<features>(c, x, s.suffixes, s.paths);

@@ -9,7 +9,7 @@ namespace castray::CASTRAY_ISA {
 /// Sequence indices of the suffixes of a tile. Under an environment runs of 2^k suffixes have runs of
 /// indices, so that what points of one orientation send out is stratified.
 CASTRAY_INLINE Uint suffix_index(const Context& c, uint32_t key, Uint item, uint32_t per_tile) {
-  if (!c.scene.lights.has_environment) return tile_index(key, c.job.sample, item, per_tile);
+  if (!c.scene.lights.environment.shines) return tile_index(key, c.job.sample, item, per_tile);
   const uint32_t order = hash_once(key, (uint32_t)c.job.sample) & (per_tile - 1);
   return (item ^ Uint(order)) + Uint(((uint32_t)c.job.sample * per_tile) & ((1u << index_bits) - 1));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/environment_lanes.h"
 #include "lights/light_share_lanes.h"
 #include "lights/lights_lanes.h"
 #include "materials/normals_lanes.h"
@@ -31,8 +32,8 @@ CASTRAY_INLINE Vec found_emission(const KernelScene& scene, Uint material, const
 }
 
 /// MIS-weighted radiance from outside the scene along d.
-CASTRAY_INLINE Vec escaped_radiance(const LightList& lights, const Vec& d, Float arrival) {
-  const EscapedLight sky = escaped_light(lights, d);
+CASTRAY_INLINE Vec escaped_radiance(const EnvironmentTable& environment, const Vec& d, Float arrival) {
+  const EscapedLight sky = light_from(environment, d);
   const Mask sampled = sky.density > Float(0.f);
   if (none(sampled)) return sky.radiance;
   return select(sampled, sky.radiance * found_weight(arrival, sky.density), sky.radiance);
@@ -79,7 +80,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       }
     }
     radiance.add(paths.names.slot + i, active & ~hit,
-                 throughput * escaped_radiance(scene.lights, d, arrival));
+                 throughput * escaped_radiance(scene.lights.environment, d, arrival));
     const Mask kept = keep_misses ? active : hit;
     const int n = out.count;
     if constexpr (features & feature_materials) {

@@ -66,6 +66,7 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   k.light_paths = traces_light_paths(options, plan);
   k.suffixes = plan.suffixes;
   k.light_points = plan.light_points;
+  k.environment_points = plan.environment_points;
   // from then on so many grids lie over each other that none can be told
   constexpr std::uint64_t few_samples = 4;
   k.ragged = plan.suffixes > 0 ? few_samples : 0;

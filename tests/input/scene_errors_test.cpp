@@ -122,6 +122,8 @@ const std::vector<Case> cases = {
             "s.json:2:22: \"spp\" must be a flag's value, not an object"),
     in_line("negative radiance", R"(  "environment": { "radiance": [0,-1,0] },)",
             "s.json:2:35: \"radiance\"[1] must be at least 0, not -1"),
+    in_line("radiance and an image", R"(  "environment": { "radiance": [1,1,1], "image": "sky.hdr" },)",
+            "s.json:2:20: \"radiance\" or \"image\", not both; \"scale\" makes an image brighter"),
     // Materials
     in_line("material without type", R"(  "materials": { "a": { "kd": [1,1,1] } },)",
             "s.json:2:23: material 'a' needs the key 'type'"),
