@@ -61,21 +61,24 @@ class FacetTracer : public Tracer {
     return {.triangles = mesh_.count};
   }
   void closest(const RayArrays& rays, std::size_t first, std::size_t count, Hit<float>* hits) const override {
-    FacetList list = facets_.list();
-    list.exact = exact_->view();
     in_scene(rays, first, count, 1)
-        .closest([&](const RayBatch& batch) { kernel_.facets_closest(list, list_slack, batch); }, 0, count,
+        .closest([&](const RayBatch& batch) { kernel_.facets_closest(list(), list_slack, batch); }, 0, count,
                  hits);
   }
   void occluded(const RayArrays& rays, std::size_t first, std::size_t count,
                 std::uint8_t* occluded) const override {
     in_scene(rays, first, count, 4)  // longer than any segment in the scene
-        .occluded(
-            [&](const ShadowBatch& batch) { kernel_.facets_occluded(facets_.list(), segment_slack, batch); },
-            0, count, occluded);
+        .occluded([&](const ShadowBatch& batch) { kernel_.facets_occluded(list(), segment_slack, batch); }, 0,
+                  count, occluded);
   }
 
  private:
+  FacetList list() const {
+    FacetList list = facets_.list();
+    list.exact = exact_->view();
+    return list;
+  }
+
   /// Rays in scene space, with directions of the given length.
   RayArrays in_scene(const RayArrays& rays, std::size_t first, std::size_t count, double norm) const {
     RayArrays moved;

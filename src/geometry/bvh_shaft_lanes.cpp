@@ -98,9 +98,7 @@ CASTRAY_INLINE void add_packets(const TrianglePacket* const (&packets)[packets_a
       corner[v] = {load_octets(first[0] + k, last[0]), load_octets(first[1] + k, last[1]),
                    load_octets(first[2] + k, last[2])};
     }
-    const Vec normal = antisymmetric_cross(corner[1] - corner[0], corner[2] - corner[0]);
-    for (Vec& v : corner) v = v - apex.origin;
-    add_pyramids(apex, corner, normal, center, half, first_lanes(count * lanes), out);
+    add_pyramids(apex, corner, center, half, first_lanes(count * lanes), out);
   }
 }
 
@@ -118,7 +116,7 @@ bool triangle_shaft(const WideBvhView& bvh, const Counts& counts, const Apex& ap
                     ShaftBudget& budget, Shaft& out) {
   out.count = 0;
   if (bvh.triangles == 0) return true;
-  const Vec center = broadcast(box.center) - apex.origin, half = broadcast(box.half);
+  const Vec center = broadcast(box.center), half = broadcast(box.half);
   const float origin[3] = {lane(apex.origin.x, 0), lane(apex.origin.y, 0), lane(apex.origin.z, 0)};
   float low[3], high[3];
   for (int a = 0; a < 3; ++a) {

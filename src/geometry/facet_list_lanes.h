@@ -8,8 +8,8 @@
 //
 // A ray meets a facet if it passes within `slack` of it, more than rounding can displace the computed point:
 // so no ray slips between two facets that share an edge or a vertex. Of facets that meet at an outline,
-// rounding may then call the wrong one the nearer: a closest hit so near to an edge is settled by the exact
-// test.
+// rounding may then call the wrong one the nearer, and small facets would block too much: what passes so near
+// to an edge is settled by the exact test.
 
 namespace castray::CASTRAY_ISA {
 
@@ -78,20 +78,41 @@ CASTRAY_INLINE ListHit list_closest(const FacetList& list, const Vec& o, const V
   return best;
 }
 
+/// How far inside their nearest edge the segments pass facets at 0 < t < 1: the most of `inside` and that of
+/// the facets of an axis.
 template <int axis>
-CASTRAY_INLINE Mask list_occluded_by_axis(const FacetList& list, const Vec& o, const Vec& d, Float slack) {
-  Mask blocked(false);
+CASTRAY_INLINE Float list_crossed_by_axis(const FacetList& list, const Vec& o, const Vec& d, Float inside) {
   for (uint32_t i = list.first[axis]; i < list.first[axis + 1]; ++i) {
     const FacetCrossing c = cross_facet<axis>(list.facets[i], o, d);
-    blocked = blocked | ((c.inside >= -slack) & (c.t > Float(0.f)) & (c.t < Float(1.f)));
+    const Mask between = (c.t > Float(0.f)) & (c.t < Float(1.f));
+    inside = select(between & (c.inside > inside), c.inside, inside);
   }
-  return blocked;
+  return inside;
+}
+
+/// Which of `lanes` are blocked by the exact test.
+[[gnu::noinline, gnu::cold]] inline Mask settle_blocked(const ExactFacets& exact, const Vec& o, const Vec& d,
+                                                        Mask lanes) {
+  uint32_t blocked = 0;
+  for (uint32_t left = bits(lanes); left; left &= left - 1) {
+    const int l = __builtin_ctz(left);
+    const float origin[3] = {lane(o.x, l), lane(o.y, l), lane(o.z, l)};
+    const float direction[3] = {lane(d.x, l), lane(d.y, l), lane(d.z, l)};
+    if (exact.occluded(exact.of, origin, direction)) blocked |= 1u << l;
+  }
+  return mask_of_bits(blocked);
 }
 
 /// Where some facet lies at 0 < t < 1.
 CASTRAY_INLINE Mask list_occluded(const FacetList& list, const Vec& o, const Vec& d, Float slack) {
-  return list_occluded_by_axis<0>(list, o, d, slack) | list_occluded_by_axis<1>(list, o, d, slack) |
-         list_occluded_by_axis<2>(list, o, d, slack);
+  Float inside = -slack;
+  inside = list_crossed_by_axis<0>(list, o, d, inside);
+  inside = list_crossed_by_axis<1>(list, o, d, inside);
+  inside = list_crossed_by_axis<2>(list, o, d, inside);
+  Mask blocked = inside >= slack;
+  const Mask near_edge = (inside > -slack) & ~blocked;
+  if (!none(near_edge)) blocked = blocked | settle_blocked(list.exact, o, d, near_edge);
+  return blocked;
 }
 
 }  // namespace castray::CASTRAY_ISA

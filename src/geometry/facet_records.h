@@ -20,24 +20,25 @@ struct Facet {
 };
 inline constexpr int facet_floats = sizeof(Facet) / sizeof(float);
 
-/// Closest hit by an exact test, for rays near edges; facet 0xffffffff is a miss.
+/// An exact test, for rays near edges: closest hit, where facet 0xffffffff is a miss; and whether the segment
+/// from the origin along the direction is blocked.
 struct ExactFacets {
   const void* of;
   void (*closest)(const void* of, const float origin[3], const float direction[3], float& t, uint32_t& facet);
+  bool (*occluded)(const void* of, const float origin[3], const float direction[3]);
 };
 
 /// Facets sorted by axis: those of axis a are facets[first[a]] to facets[first[a + 1] - 1].
 struct FacetList {
   const Facet* facets;
   uint32_t first[4];
-  ExactFacets exact;  ///< of the same facets; only for closest hits
+  ExactFacets exact;  ///< of the whole scene
 };
 
 /// The facets that can lie between two points of the scene, or before its environment, field by field, padded
 /// to a multiple of 16 with copies of the last one.
 struct BlockerList {
   const float* corner[4][3];
-  const float* normal[3];
   uint32_t count, padded;
 };
 

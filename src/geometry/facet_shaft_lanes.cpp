@@ -7,16 +7,13 @@ namespace castray::CASTRAY_ISA {
 template <class Apex>
 void facet_shaft(const BlockerList& blockers, const Apex& apex, const Box& box, Shaft& out) {
   out.count = 0;
-  const Vec center = broadcast(box.center) - apex.origin, half = broadcast(box.half);
+  const Vec center = broadcast(box.center), half = broadcast(box.half);
   for (uint32_t i = 0; i < blockers.count; i += width) {
     Vec corner[4];
     for (int k = 0; k < 4; ++k)
       corner[k] = Vec{load(blockers.corner[k][0] + i), load(blockers.corner[k][1] + i),
-                      load(blockers.corner[k][2] + i)} -
-                  apex.origin;
-    const Vec normal{load(blockers.normal[0] + i), load(blockers.normal[1] + i),
-                     load(blockers.normal[2] + i)};
-    add_pyramids(apex, corner, normal, center, half, first_lanes((int)(blockers.count - i)), out);
+                      load(blockers.corner[k][2] + i)};
+    add_pyramids(apex, corner, center, half, first_lanes((int)(blockers.count - i)), out);
   }
 }
 

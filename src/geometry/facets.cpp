@@ -145,8 +145,8 @@ std::vector<Facet> merge_triangles(const Scene& scene, const std::vector<std::ui
   return facets;
 }
 
-/// Whether some of the scene, or an environment that shines, lies behind the facet as seen from other parts of
-/// the scene.
+/// Whether some of the scene, or an environment that shines, lies behind the facet as seen from other parts
+/// of the scene.
 bool can_block(const Facet& f, const Scene& scene) {
   if (max_component(scene.environment) > 0) return true;
   const Vec3d n{f.normal[0], f.normal[1], f.normal[2]};
@@ -198,10 +198,6 @@ BlockerList Facets::blocker_field_list() const {
       component = field;
       field += list.padded;
     }
-  for (const float*& component : list.normal) {
-    component = field;
-    field += list.padded;
-  }
   return list;
 }
 
@@ -213,10 +209,10 @@ Facets make_facets(const Scene& scene) {
   for (const Facet& f : result.facets)
     if (can_block(f, scene)) result.blockers.push_back(f);
   const std::size_t padded = (result.blockers.size() + 15) / 16 * 16;
-  for (std::size_t field = 0; field < 15; ++field)
+  for (std::size_t field = 0; field < 12; ++field)
     for (std::size_t i = 0; i < padded; ++i) {
       const Facet& f = result.blockers[std::min(i, result.blockers.size() - 1)];
-      result.blocker_fields.push_back(field < 12 ? f.corner[field / 3][field % 3] : f.normal[field - 12]);
+      result.blocker_fields.push_back(f.corner[field / 3][field % 3]);
     }
   return result;
 }
@@ -227,13 +223,26 @@ FacetsInDouble::FacetsInDouble(const Scene& scene, const std::vector<Facet>& fac
     for (const std::uint32_t triangle : facets[i].triangle) facet_of_[triangle] = i;
 }
 
+namespace {
+
+Ray<double> ray_of(const float origin[3], const float direction[3]) {
+  return {{origin[0], origin[1], origin[2]}, {direction[0], direction[1], direction[2]}};
+}
+
+}  // namespace
+
 void FacetsInDouble::closest(const void* self, const float origin[3], const float direction[3], float& t,
                              std::uint32_t& facet) {
   const auto& facets = *static_cast<const FacetsInDouble*>(self);
-  const Hit<double> hit = facets.triangles_.closest(
-      Ray<double>{{origin[0], origin[1], origin[2]}, {direction[0], direction[1], direction[2]}});
+  const Hit<double> hit = facets.triangles_.closest(ray_of(origin, direction));
   t = static_cast<float>(hit.t);
   facet = hit.found() ? facets.facet_of_[hit.triangle] : Scene::no_index;
+}
+
+bool FacetsInDouble::occluded(const void* self, const float origin[3], const float direction[3]) {
+  Ray<double> segment = ray_of(origin, direction);
+  segment.t_max = 1;
+  return static_cast<const FacetsInDouble*>(self)->triangles_.occluded(segment);
 }
 
 std::vector<Facet> emitting_facets(const Scene& scene) {

@@ -24,16 +24,17 @@ struct Facets {
 /// environment.
 Facets make_facets(const Scene& scene);
 
-/// Closest hits on facets by the reference's test of their triangles, in double: watertight, and right about
-/// which of two facets that share an edge is in front. The scene must outlive it.
+/// Hits on facets by the reference's test of their triangles, in double: watertight, and right about which of
+/// two facets that share an edge is in front. The scene must outlive it.
 class FacetsInDouble {
  public:
   FacetsInDouble(const Scene& scene, const std::vector<Facet>& facets);
-  ExactFacets view() const { return {this, closest}; }
+  ExactFacets view() const { return {this, closest, occluded}; }
 
  private:
   static void closest(const void* self, const float origin[3], const float direction[3], float& t,
                       std::uint32_t& facet);
+  static bool occluded(const void* self, const float origin[3], const float direction[3]);
 
   TriangleList triangles_;
   std::vector<std::uint32_t> facet_of_;  ///< by triangle

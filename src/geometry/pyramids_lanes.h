@@ -4,42 +4,49 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// a x b without fused operations, so that swapping a and b negates it exactly.
-CASTRAY_INLINE Vec antisymmetric_cross(Vec a, Vec b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-/// Adds the pyramids over facets, those that meet the box. Corners and `center` are relative to the apex's
-/// origin.
+/// Adds the pyramids from an apex over facets, those that meet the box around `center`. All planes are
+/// relative to the box, so that they round in proportion to how far facets and box reach from its centre: to
+/// the size of a small part that is seen from afar.
 template <class Apex, int corners>
-CASTRAY_INLINE void add_pyramids(const Apex& apex, const Vec (&corner)[corners], const Vec& normal,
-                                 const Vec& center, const Vec& half, Mask lanes, Shaft& out) {
-  const Float above = apex.above(normal, corner[0]);
-  const Vec beyond{flip_by_sign(normal.x, above), flip_by_sign(normal.y, above),
-                   flip_by_sign(normal.z, above)};
-  // However distances from the plane are rounded (4u of the terms), the facet must not hide a point of
-  // the box that lies on it.
-  const Vec size = magnitude(normal), reach = magnitude(center) + half;
-  const Float base = fma(dot(size, reach), Float(0x1p-21f), apex.offset(beyond, corner[0], above));
-  Vec edge[corners];
-  Float margin[corners];
+CASTRAY_INLINE void add_pyramids(const Apex& apex, const Vec (&corner)[corners], const Vec& center,
+                                 const Vec& half, Mask lanes, Shaft& out) {
+  const Vec side1 = corner[1] - corner[0], side2 = corner[2] - corner[0], normal = cross(side1, side2);
+  Vec from_apex[corners], local[corners];
   for (int k = 0; k < corners; ++k) {
-    const Vec &from = corner[k], &to = corner[(k + 1) % corners];
-    // The normal of the plane through apex and edge (from a point, 2 (from x to)), with error proportional
-    // to edge length; swapping corners negates it exactly, so neighbours leave no gap.
-    const Vec sum = from + to, along = to - from, towards = apex.towards(sum);
-    const Vec e = antisymmetric_cross(towards, along);
-    edge[k] = {flip_by_sign(e.x, above), flip_by_sign(e.y, above), flip_by_sign(e.z, above)};
-    margin[k] = apex.margin(edge[k], sum, sum_abs(towards) * sum_abs(along) * Float(0x1p-21f), reach);
+    from_apex[k] = apex.towards(corner[k]);
+    local[k] = corner[k] - center;
   }
-  const Mask meets = lanes & meets_box(edge, margin, beyond, base, center, half);
+  // Bounds of every edge, and of the distances to every corner from points of the box and from the apex.
+  const Float size1 = sum_abs(side1), size2 = sum_abs(side2), size = size1 + size2;
+  const Float from_box = sum_abs(half) + sum_abs(local[0]) + size, distance = sum_abs(from_apex[0]) + size;
+  const Float above = dot(normal, from_apex[0]);
+  const auto away_from_apex = [above](const Vec& v) {
+    return Vec{flip_by_sign(v.x, above), flip_by_sign(v.y, above), flip_by_sign(v.z, above)};
+  };
+  // However the distance from the plane is rounded (8u of the terms), the facet must not hide a point of the
+  // box that lies on it.
+  const Vec beyond = away_from_apex(normal);
+  const Float reach = max_component(half) + max_component(magnitude(local[0]));
+  const Float base = fma(size1 * size2 * reach, Float(0x1p-21f), dot(beyond, local[0]));
+  const Float error = distance * size * from_box * Float(0x1p-20f);
+  Vec edge[corners];
+  Float offset[corners];
+  Mask meets = lanes & (dot(magnitude(beyond), half) > base);
+  for (int k = 0; k < corners; ++k) {
+    const Vec along = corner[(k + 1) % corners] - corner[k];
+    edge[k] = away_from_apex(cross(from_apex[k], along));
+    offset[k] = -dot(edge[k], local[k]);
+    if (k == 3) offset[k] = select(sum_abs(along) > Float(0.f), offset[k], error + error);  // of a triangle
+    meets = meets & (dot(magnitude(edge[k]), half) + offset[k] >= -error);
+  }
   if (none(meets)) return;
   const int n = out.count;
+  const Float scale = Float(1.f) / error;
   for (int k = 0; k < corners; ++k) {
-    compress_store(out.edge[k][0] + n, meets, edge[k].x);
-    compress_store(out.edge[k][1] + n, meets, edge[k].y);
-    compress_store(out.edge[k][2] + n, meets, edge[k].z);
-    compress_store(out.margin[k] + n, meets, margin[k]);
+    compress_store(out.edge[k][0] + n, meets, edge[k].x * scale);
+    compress_store(out.edge[k][1] + n, meets, edge[k].y * scale);
+    compress_store(out.edge[k][2] + n, meets, edge[k].z * scale);
+    compress_store(out.offset[k] + n, meets, offset[k] * scale);
   }
   compress_store(out.normal[0] + n, meets, beyond.x);
   compress_store(out.normal[1] + n, meets, beyond.y);

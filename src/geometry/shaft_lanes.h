@@ -15,48 +15,29 @@ struct Box {
 
 inline constexpr int max_blockers = 384;
 
-/// What a box is seen from. Corners and points are relative to `origin`; w is a unit vector.
-///
-/// From a point, which is the origin, the side planes of pyramids pass through the origin.
+/// What a box is seen from: a point.
 struct NearApex {
   Vec origin;
 
-  /// Positive if the plane of a facet with this corner faces away from the apex.
-  CASTRAY_INLINE Float above(const Vec& normal, const Vec& corner) const { return dot(normal, corner); }
-  /// normal . p of the points of the facet's plane, `normal` turned away from the apex.
-  CASTRAY_INLINE Float offset(const Vec& /*normal*/, const Vec& /*corner*/, Float above) const {
-    return abs(above);
-  }
-  /// From the apex to the middle of an edge whose ends have this sum; of any length.
-  CASTRAY_INLINE Vec towards(const Vec& sum) const { return sum; }
-  /// Shaft::margin of the plane with normal `edge`, which is known to within `error`, through apex and edge;
-  /// for points up to `reach` away.
-  CASTRAY_INLINE Float margin(const Vec& /*edge*/, const Vec& /*sum*/, Float error,
-                              const Vec& /*reach*/) const {
-    return error;
-  }
+  /// From the apex to a corner.
+  CASTRAY_INLINE Vec towards(const Vec& corner) const { return corner - origin; }
 };
 
-/// Seen from infinitely far away in direction w: pyramids are prisms along w.
+/// Infinitely far away, in the direction of unit vector w: pyramids are prisms along w. Hulls are computed
+/// relative to `origin`, a place near the box.
 struct FarApex {
   Vec w, origin;
 
-  CASTRAY_INLINE Float above(const Vec& normal, const Vec& /*corner*/) const { return -dot(normal, w); }
-  CASTRAY_INLINE Float offset(const Vec& normal, const Vec& corner, Float /*above*/) const {
-    return dot(normal, corner);
-  }
-  CASTRAY_INLINE Vec towards(const Vec& /*sum*/) const { return -w; }
-  CASTRAY_INLINE Float margin(const Vec& edge, const Vec& sum, Float error, const Vec& reach) const {
-    return fma(error, sum_abs(sum) + sum_abs(reach), dot(edge, sum) * Float(-0.5f));
-  }
+  CASTRAY_INLINE Vec towards(const Vec& /*corner*/) const { return -w; }
 };
 
 /// Possible blockers between an apex and a box, as pyramids with that apex over facets of three or four
-/// corners. Pyramid i hides origin + d if d is inside its side planes, edge . d >= -margin, and behind its
-/// base, normal . d > base.
+/// corners. Places are relative to the box's centre. A pyramid hides p if p is inside its side planes,
+/// edge . p + offset >= 0, and behind its base, normal . p > base. Sides are scaled so that rounding is less
+/// than 1.
 struct Shaft {
   int count = 0;
-  alignas(64) float edge[4][3][max_blockers + 16], margin[4][max_blockers + 16];
+  alignas(64) float edge[4][3][max_blockers + 16], offset[4][max_blockers + 16];
   alignas(64) float normal[3][max_blockers + 16], base[max_blockers + 16];
 };
 
@@ -74,53 +55,38 @@ struct ShaftBudget {
   }
 };
 
-/// Maximum of a . d over the box; `center` is the box's centre, relative to the origin as d is.
-CASTRAY_INLINE Float support(Vec a, Vec center, Vec half) {
-  return dot(a, center) + fma(abs(a.x), half.x, fma(abs(a.y), half.y, abs(a.z) * half.z));
-}
-
-/// Where a pyramid with these planes (see Shaft) meets the box.
-template <int corners>
-CASTRAY_INLINE Mask meets_box(const Vec (&edge)[corners], const Float (&margin)[corners], const Vec& normal,
-                              Float base, const Vec& center, const Vec& half) {
-  Mask meets = support(normal, center, half) > base;
-  for (int k = 0; k < corners; ++k)
-    meets = meets & (support(edge[k], center, half) + margin[k] >= Float(0.f));
-  return meets;
-}
-
-/// Numbers of the pyramids that meet a box around origin + center, to `out`; returns how many.
+/// Numbers of the pyramids that meet a part of the box, to `out`; returns how many. `center`: the part's,
+/// relative to the box's.
 template <int corners>
 CASTRAY_INLINE int pyramids_of_part(const Shaft& s, const Vec& center, const Vec& half, uint32_t* out) {
   int n = 0;
   for (int i = 0; i < s.count; i += width) {
-    const auto at = [&](const float(&v)[3][max_blockers + 16]) {
-      return Vec{load(v[0] + i), load(v[1] + i), load(v[2] + i)};
+    const auto support = [&](const float(&plane)[3][max_blockers + 16]) {
+      const Vec a{load(plane[0] + i), load(plane[1] + i), load(plane[2] + i)};
+      return dot(a, center) + dot(magnitude(a), half);
     };
-    Vec edge[corners];
-    Float margin[corners];
-    for (int k = 0; k < corners; ++k) {
-      edge[k] = at(s.edge[k]);
-      margin[k] = load(s.margin[k] + i);
-    }
-    const Mask meets =
-        first_lanes(s.count - i) & meets_box(edge, margin, at(s.normal), load(s.base + i), center, half);
+    Mask meets = first_lanes(s.count - i) & (support(s.normal) > load(s.base + i));
+    for (int k = 0; k < corners; ++k)
+      meets = meets & (support(s.edge[k]) + load(s.offset[k] + i) >= Float(-1.f));
     compress_store(out + n, meets, Uint((uint32_t)i) + lane_index());
     n += count(meets);
   }
   return n;
 }
 
-/// Where pyramid i hides origin + d.
+/// How far inside the sides of pyramid i each p lies that is behind its base, in units of rounding: hidden
+/// from 1 on, not hidden below -1; between the two only a ray can tell. -infinity if p is not behind the
+/// base.
 template <int corners>
-CASTRAY_INLINE Mask hides(const Shaft& s, uint32_t i, const Vec& d) {
-  Float inside = Float(0.f);
-  for (int k = 0; k < corners; ++k) {
-    const Vec edge{Float(s.edge[k][0][i]), Float(s.edge[k][1][i]), Float(s.edge[k][2][i])};
-    inside = min(inside, dot(edge, d) + Float(s.margin[k][i]));
-  }
+CASTRAY_INLINE Float hidden_by(const Shaft& s, uint32_t i, const Vec& p) {
+  Float inside(__builtin_inff());
+  for (int k = 0; k < corners; ++k)
+    inside =
+        min(inside,
+            fma(Float(s.edge[k][0][i]), p.x,
+                fma(Float(s.edge[k][1][i]), p.y, fma(Float(s.edge[k][2][i]), p.z, Float(s.offset[k][i])))));
   const Vec normal{Float(s.normal[0][i]), Float(s.normal[1][i]), Float(s.normal[2][i])};
-  return (inside >= Float(0.f)) & (dot(normal, d) > Float(s.base[i]));
+  return select(dot(normal, p) > Float(s.base[i]), inside, Float(-__builtin_inff()));
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -60,6 +60,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.geometry.list.facets = facets.list();
     view.geometry.list.facets.exact = edges->view();
     view.geometry.list.blockers = facets.blocker_list();
+    view.geometry.list.blockers.exact = edges->view();
     view.geometry.list.blocker_fields = facets.blocker_field_list();
   } else {
     bvh = WideBvh::build(mesh_of(scene), threads, plan.build);

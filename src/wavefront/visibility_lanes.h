@@ -32,15 +32,20 @@ CASTRAY_INLINE Segment segment_of(const Geometry&, const FarSender& y, const Vec
   return {p, y.w * Float(beyond_scene)};
 }
 
-/// Visibility by one shadow ray a pixel.
+/// The lanes of vector i of a tile, of a bit for each of its pixels.
+CASTRAY_INLINE Mask lanes_of(uint64_t pixels, int i) {
+  return mask_of_bits((uint32_t)(pixels >> (i * width)) & (uint32_t)((1ull << width) - 1));
+}
+
+/// Visibility of the pixels `asked` by one shadow ray each.
 template <class Geometry, class AnySender>
-CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers& tile, VisibilityScratch& s,
-                                 bool weights, Transfer& t) {
+CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers& tile, uint64_t asked,
+                                 VisibilityScratch& s, bool weights, Transfer& t) {
   const Geometry geometry = geometry_of<Geometry>(c);
   int n = 0;
   for (int i = 0; i < tile_vectors; ++i) {
     const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
-    const Mask open = (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
+    const Mask open = lanes_of(asked, i) & (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
     const int entry = tile.first + i * width;
     const Segment traced = segment_of(geometry, y, load(tile.x.p, entry), load(tile.x.normal, entry));
     compress_store(s.o, n, open, traced.o);
@@ -51,42 +56,57 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers
   geometry.occluded({s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, c.ends.one, s.blocked, (uint32_t)n});
   uint64_t hidden = 0;
   for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
-  for (int i = 0; i < tile_vectors; ++i)
-    hide(t, i, mask_of_bits((uint32_t)(hidden >> (i * width)) & (uint32_t)((1ull << width) - 1)), weights);
+  for (int i = 0; i < tile_vectors; ++i) hide(t, i, lanes_of(hidden, i), weights);
 }
 
 /// With more pyramids than this, it pays to select those that meet each part of a tile.
 inline constexpr int few_pyramids = 16;
 
-/// Visibility by the pyramids of a shaft, or by rays where the shaft holds too much.
+/// Visibility by the pyramids of the shaft. Returns the pixels that it leaves open: those on the outline of a
+/// pyramid, as far as rounding tells.
+template <class Geometry, class AnySender>
+CASTRAY_INLINE uint64_t hide_by_pyramids(const AnySender& y, const Gatherers& tile, VisibilityScratch& s,
+                                         bool weights, Transfer& t) {
+  constexpr int corners = Geometry::blocker_corners;
+  if (s.shaft.count == 0) return 0;
+  const bool choose = Geometry::has_many_blockers && s.shaft.count > few_pyramids;
+  const Vec center = broadcast(tile.boxes.all.center);
+  int pyramids = s.shaft.count;
+  uint64_t unsure = 0;
+  for (int i = 0; i < tile_vectors; ++i) {
+    if (choose && i % part_vectors == 0) {
+      const Box& part = tile.boxes.part[i / part_vectors];
+      pyramids = pyramids_of_part<corners>(s.shaft, broadcast(part.center) - center, broadcast(part.half),
+                                           s.pyramids);
+    }
+    const Mask open = t.density[i] > Float(0.f);
+    if (none(open)) continue;
+    const Vec p = load(tile.x.p, tile.first + i * width) - center;
+    Float inside(-__builtin_inff());
+    for (int b = 0; b < pyramids; ++b) {
+      inside = max(inside, hidden_by<corners>(s.shaft, choose ? s.pyramids[b] : (uint32_t)b, p));
+      if ((b & 3) == 3 && none(open & (inside < Float(1.f)))) break;
+    }
+    const Mask hidden = inside >= Float(1.f);
+    const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
+    hide(t, i, hidden & ~own, weights);
+    unsure |= (uint64_t)bits(open & ~hidden & (inside >= Float(-1.f))) << (i * width);
+  }
+  return unsure;
+}
+
+/// Visibility by a shaft, or by rays where it holds too much.
 template <class Geometry, uint32_t features, class AnySender>
 CASTRAY_INLINE void hide_blocked(Context& c, const AnySender& y, Gatherers& tile, VisibilityScratch& s,
                                  Transfer& t) {
   constexpr bool weights = features & feature_materials;
-  constexpr int corners = Geometry::blocker_corners;
-  const auto apex = apex_of(y, tile.boxes.all);
-  if (!geometry_of<Geometry>(c).make_shaft(apex, tile.boxes.all, tile.budget, s.shaft))
-    return hide_by_rays<Geometry>(c, y, tile, s, weights, t);
-  if (s.shaft.count == 0) return;
-  const bool choose = Geometry::has_many_blockers && s.shaft.count > few_pyramids;
-  int pyramids = s.shaft.count;
-  for (int i = 0; i < tile_vectors; ++i) {
-    if (choose && i % part_vectors == 0) {
-      const Box& part = tile.boxes.part[i / part_vectors];
-      pyramids = pyramids_of_part<corners>(s.shaft, broadcast(part.center) - apex.origin,
-                                           broadcast(part.half), s.pyramids);
-    }
-    const Mask open = t.density[i] > Float(0.f);
-    if (none(open)) continue;
-    const Vec d = load(tile.x.p, tile.first + i * width) - apex.origin;
-    Mask hidden(false);
-    for (int b = 0; b < pyramids; ++b) {
-      hidden = hidden | hides<corners>(s.shaft, choose ? s.pyramids[b] : (uint32_t)b, d);
-      if ((b & 3) == 3 && none(open & ~hidden)) break;
-    }
-    const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
-    hide(t, i, hidden & ~own, weights);
-  }
+  Mask open(false);
+  for (const Float& density : t.density) open = open | (density > Float(0.f));
+  if (none(open)) return;
+  uint64_t asked = ~0ull;
+  if (geometry_of<Geometry>(c).make_shaft(apex_of(y, tile.boxes.all), tile.boxes.all, tile.budget, s.shaft))
+    asked = hide_by_pyramids<Geometry>(y, tile, s, weights, t);
+  if (asked) hide_by_rays<Geometry>(c, y, tile, asked, s, weights, t);
 }
 
 template <class Geometry, uint32_t features, class AnySender>
