@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "castray/differences.h"
 #include "castray/image.h"
 #include "castray/vec.h"
 
@@ -55,6 +56,14 @@ class Film {
 
   /// Adds one sample to pixel (x,y) of the full image. Different pixels may be added to by different threads.
   void add(int x, int y, const Vec3f& radiance);
+
+  /// Starts to keep the sums that an image is reconstructed from, of a film without samples. All samples must
+  /// then come as tiles.
+  void keep_differences();
+  const DifferenceSums& differences() const { return differences_; }
+
+  /// Adds rows y0 <= y < y1 of a tile, y of the full image, to a film that keeps differences.
+  void add(const TileSamples& tile, int y0, int y1);
 
   /// Starts to keep splats: what paths from lights bring to the pixels that they happen to be seen in.
   void keep_splats();
@@ -154,9 +163,15 @@ class Film {
   std::vector<std::uint32_t> counts_;
   std::vector<Sum> splats_;  ///< 3 per pixel, or none
   std::vector<std::uint64_t>
-      light_paths_;                    ///< per pixel, as windows and samples of merged films differ; or none
+      light_paths_;  ///< per pixel, as windows and samples of merged films differ; or none
+  DifferenceSums differences_;
   std::vector<Replicate> replicates_;  ///< ascending
 };
+
+/// The film's image: reconstructed from means and differences if it keeps differences (docs/transport.md),
+/// else its means. Reconstruction has the same mean and much less noise; it may make a dark pixel negative.
+/// The same for any number of threads; 0: all that this process may use.
+Image image_of(const Film& film, int threads = 0);
 
 /// The noise of the film's image, from its replicates; none if it keeps fewer than two. The pixels of a block
 /// share the variance of the block's mean, times its pixels, times one factor of at least 1 for the whole
@@ -178,8 +193,11 @@ Film read_film(const std::filesystem::path& file);
 /// for what the sums would show.
 Film read_film_header(const std::filesystem::path& file);
 
-/// Writes the film losslessly to a .film file, else its image (see `write_image`). The bytes of a .film
-/// depend only on the samples and `key`, not on the order in which they were added and merged.
+/// Writes the film losslessly to .film files, and its image, made once, to others (see `write_image`). The
+/// bytes of a .film depend only on the samples and `key`, not on the order in which they were added and
+/// merged. `threads`: as for `image_of`.
+void write_film(const std::vector<std::filesystem::path>& files, const Film& film,
+                const Display& display = {}, const Metadata& metadata = {}, int threads = 0);
 void write_film(const std::filesystem::path& file, const Film& film, const Display& display = {},
                 const Metadata& metadata = {});
 

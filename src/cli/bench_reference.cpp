@@ -75,7 +75,7 @@ ReferencePair cached_references(const Scene& scene, const RenderRequest& request
       film = render(*prepared, options, tell, film ? &*film : nullptr).film;
       write_film(file, *film);
     }
-    images[i] = film->image();
+    images[i] = image_of(*film, options.threads);
   }
   return {std::move(images[0]), std::move(images[1])};
 }

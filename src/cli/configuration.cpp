@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -95,7 +96,10 @@ Contender configuration_contender(const ConfiguredRender& where, const Configura
     now.seed = seed;
     if (!*prepared) *prepared = prepare(where.scene, request);
     const RenderResult result = render(**prepared, now);
-    return Rendering{result.film.image(), result.stats.render_seconds, {}};
+    const auto begin = std::chrono::steady_clock::now();
+    Image image = image_of(result.film, now.threads);
+    const std::chrono::duration<double> reconstruction = std::chrono::steady_clock::now() - begin;
+    return Rendering{std::move(image), result.stats.render_seconds + reconstruction.count(), {}};
   };
   const auto process_seconds = [=, flags = configuration.flags](std::uint64_t spp, std::uint64_t seed) {
     return whole_process_seconds(where, flags, spp, seed);

@@ -39,7 +39,7 @@ struct Convert {
       throw InputError("--layer: only .exr files have layers; leave it out");
     if (is_film_format(input) && std::any_of(outputs.begin(), outputs.end(), is_film_format)) {
       const Film film = read_film(input);
-      for (const auto& output : outputs) write_film(output, film, display);
+      write_film(outputs, film, display);
       return tell_outputs(common);
     }
     const ImageFile file = read_image(input, layer);

@@ -50,6 +50,7 @@ void print_film(const std::filesystem::path& file) {
                film.samples.front().first, film.samples.front().count);
   else
     for (const SampleRange& range : film.samples) fmt::print("samples    {}:{}\n", range.first, range.count);
+  if (film.differences().kept()) fmt::print("image of   means and differences of pixels (--reconstruct)\n");
   if (film.nonfinite_samples) fmt::print("warning    {} samples were not finite\n", film.nonfinite_samples);
 }
 

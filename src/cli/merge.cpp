@@ -55,7 +55,7 @@ struct Merge {
       if (!common.quiet) meter.tell(done, inputs.size());
     });
     if (!merged.missing.empty()) tell_missing(merged.missing);
-    for (const auto& output : outputs) write_film(output, merged.film, display, describe(merged.film));
+    write_film(outputs, merged.film, display, describe(merged.film));
     if (common.verbose) tell_written(outputs);
     return 0;
   }

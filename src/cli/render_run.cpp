@@ -108,8 +108,10 @@ double RenderRun::seconds_to_write(const Film& film) const {
   const TemporaryFolder folder;
   const Clock::time_point begin = Clock::now();
   try {
+    std::vector<fs::path> trials;
     for (const fs::path& output : request_.outputs)
-      write(folder.path() / ("trial" + suffix_of(output)), film);
+      trials.push_back(folder.path() / ("trial" + suffix_of(output)));
+    write(trials, film);
   } catch (const InputError&) {
     // a full disk may be another one than that of the outputs
   }
@@ -136,15 +138,17 @@ void RenderRun::watch_film(const Film& film) {
 }
 
 void RenderRun::write_snapshot(const Film& film) {
+  std::vector<fs::path> files;
   for (const fs::path& output : request_.outputs)
-    if (!is_standard_output(output)) write(output, film);
+    if (!is_standard_output(output)) files.push_back(output);
+  write(files, film);
   previewed_ = Clock::now();
 }
 
 /// The last view of all stays in tev; the terminal's own screen comes back.
 void RenderRun::view(const Film& film) {
   if (!terminal_ && !tev_) return;
-  const Image image = film.image();
+  const Image image = image_of(film, request_.options.threads);
   if (terminal_) terminal_->show(image);
   if (tev_) tev_->show(image);
   viewed_ = Clock::now();
@@ -161,13 +165,13 @@ bool RenderRun::is_preview_due() const {
   return request_.preview_seconds && seconds_since(previewed_) >= *request_.preview_seconds;
 }
 
-void RenderRun::write(const fs::path& output, const Film& film) const {
-  write_film(output, film, request_.display, report_.metadata(film));
+void RenderRun::write(const std::vector<fs::path>& outputs, const Film& film) const {
+  write_film(outputs, film, request_.display, report_.metadata(film), request_.options.threads);
 }
 
 void RenderRun::save(const Film& film) {
   if (checkpoint_) checkpoint_->save(film);
-  for (const fs::path& output : request_.outputs) write(output, film);
+  write(request_.outputs, film);
 }
 
 }  // namespace castray::cli

@@ -40,7 +40,7 @@ class RenderRun {
   bool is_preview_due() const;
   void open_viewers(const Scene& scene);
   void view(const Film& film);
-  void write(const std::filesystem::path& output, const Film& film) const;
+  void write(const std::vector<std::filesystem::path>& outputs, const Film& film) const;
 
   const RenderRequest& request_;
   const RenderReport& report_;

@@ -104,6 +104,21 @@ void Film::add_splat(int x, int y, const Vec3f& radiance) {
   for (int c = 0; c < 3; ++c) splats_[3 * pixel + static_cast<std::size_t>(c)].add(radiance[c], scale_);
 }
 
+void Film::keep_differences() { differences_ = DifferenceSums(counts_.size(), scale_); }
+
+void Film::add(const TileSamples& tile, int y0, int y1) {
+  for (int y = y0; y < y1; ++y) {
+    const int row = y - tile.y;
+    for (int column = 0; column < tile_side; ++column) {
+      const int i = row * tile_side + column;
+      if (tile.kept >> i & 1)
+        add(tile.x + column, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
+    }
+    differences_.add(tile, row,
+                     static_cast<std::ptrdiff_t>(y - window_.y0) * width() + (tile.x - window_.x0));
+  }
+}
+
 Vec3d Film::mean(int x, int y) const {
   const std::size_t pixel = index(x, y);
   if (counts_[pixel] == 0) return {};
@@ -186,6 +201,7 @@ Film Film::without_samples(const Window& window) const {
   film.key = key;
   film.version = version;
   film.planned = planned;
+  if (differences_.kept()) film.keep_differences();
   return film;
 }
 
@@ -193,6 +209,8 @@ std::string Film::difference_from(const Film& other) const {
   if (key != other.key) return difference_of_keys(key, other.key);
   if (version != other.version) return "castray " + version + " against castray " + other.version;
   if (scale_ != other.scale_) return fmt::format("lights of radiance {} against {}", scale_, other.scale_);
+  if (differences_.kept() != other.differences_.kept())
+    return differences_.kept() ? "one film keeps differences against none" : "no differences against some";
   if (keeps_replicates() == other.keeps_replicates()) return {};
   return keeps_replicates() ? "one film keeps replicates against none" : "no replicates against some";
 }
@@ -215,6 +233,7 @@ void Film::add(const Film& other) {
     const std::size_t to = index(w.x0, y), from = other.index(w.x0, y);
     for (std::size_t i = 0; i < 3 * columns; ++i) sums_[3 * to + i] += other.sums_[3 * from + i];
     for (std::size_t i = 0; i < columns; ++i) counts_[to + i] += other.counts_[from + i];
+    if (differences_.kept()) differences_.add(to, other.differences_, from, columns);
     if (!other.keeps_splats()) continue;
     for (std::size_t i = 0; i < 3 * columns; ++i) splats_[3 * to + i] += other.splats_[3 * from + i];
     for (std::size_t i = 0; i < columns; ++i) light_paths_[to + i] += other.light_paths_[from + i];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 
 #include "castray/error.h"
@@ -18,13 +19,16 @@ namespace castray {
 // row first, red, green, blue, the pair (high, low) of doubles with high + low the sum and high its rounding;
 // then per pixel the number of samples (32 bits); the same, with 64 bits, per block of each replicate; the
 // sums of splats and the numbers of light paths (64 bits), per block after each replicate and per pixel at
-// the end, if the header has "splats"; then the CRC-32 of all before.
+// the end, if the header has "splats"; then the CRC-32 of all before. With differences the first line is
+// "castray film 2", and before the CRC-32 are, per half and pixel, DifferenceSums::Pixel (64 bytes), then
+// likewise DifferenceSums::Apart (96 bytes).
 
 static_assert(std::endian::native == std::endian::little, "film files are written as memory holds them");
 
 namespace {
 
-constexpr std::string_view magic = "castray film 1\n";
+constexpr std::string_view magic = "castray film 1\n", magic_of_differences = "castray film 2\n";
+static_assert(magic.size() == magic_of_differences.size());
 constexpr std::uint64_t max_side = 1 << 24;
 using nlohmann::json;
 
@@ -51,8 +55,8 @@ struct FilmFile {
     if (film.planned && film.samples != std::vector{*film.planned})
       header["planned"] = {film.planned->first, film.planned->count};
     if (film.keeps_splats()) header["splats"] = true;
-    std::string bytes =
-        std::string(magic) + header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
+    std::string bytes = std::string(film.differences_.kept() ? magic_of_differences : magic) +
+                        header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
     append_sums(bytes, film.sums_);
     append(bytes, film.counts_);
     for (const Film::Replicate& replicate : film.replicates_) {
@@ -63,18 +67,23 @@ struct FilmFile {
     }
     append_sums(bytes, film.splats_);
     append(bytes, film.light_paths_);
+    append(bytes, film.differences_.sums());
+    append(bytes, film.differences_.apart());
     append(bytes, std::array{checksum(bytes)});
     return bytes;
   }
 
   /// The head of `bytes`: the film without its sums, and where they begin.
   static Film parse_head(const std::string& name, std::string_view bytes, std::size_t& data_begin) {
-    if (!bytes.starts_with(magic)) throw InputError({name}, "is not a film of castray (format 1)");
+    if (!bytes.starts_with(magic) && !bytes.starts_with(magic_of_differences))
+      throw InputError({name}, "is not a film of castray (format 1 or 2)");
     const std::size_t header_end = bytes.find('\n', magic.size());
     if (header_end == std::string_view::npos) throw InputError({name}, "is truncated");
     data_begin = header_end + 1;
     try {
-      return parse_header(json::parse(bytes.substr(magic.size(), header_end - magic.size())));
+      Film film = parse_header(json::parse(bytes.substr(magic.size(), header_end - magic.size())));
+      if (bytes.starts_with(magic_of_differences)) film.differences_ = DifferenceSums(0, film.scale_);
+      return film;
     } catch (const json::exception& error) {
       throw InputError({name}, std::string("has a corrupt header: ") + error.what());
     }
@@ -91,8 +100,10 @@ struct FilmFile {
         static_cast<std::size_t>(grid.x1 - grid.x0) * static_cast<std::size_t>(grid.y1 - grid.y0);
     constexpr std::size_t colour_bytes = 3 * sizeof(Film::Sum);
     const std::size_t splat_bytes = film.keeps_splats() ? colour_bytes + 8 : 0;
+    const std::size_t pairs = film.differences_.kept() ? DifferenceSums::halves * pixels : 0;
     const std::size_t length = pixels * (colour_bytes + 4 + splat_bytes) +
                                film.replicates_.size() * blocks * (colour_bytes + 8 + splat_bytes) +
+                               pairs * (sizeof(DifferenceSums::Pixel) + sizeof(DifferenceSums::Apart)) +
                                sizeof(std::uint32_t);
     if (data.size() != length) fail(data.size() < length ? "is truncated" : "has bytes behind its end");
     std::uint32_t stored;
@@ -109,9 +120,12 @@ struct FilmFile {
       at = read_values(at, replicate.splats, 3 * blocks);
       at = read_values(at, replicate.light_paths, blocks);
     }
-    if (!film.keeps_splats()) return film;
-    at = read_values(at, film.splats_, 3 * pixels);
-    at = read_values(at, film.light_paths_, pixels);
+    if (film.keeps_splats()) {
+      at = read_values(at, film.splats_, 3 * pixels);
+      at = read_values(at, film.light_paths_, pixels);
+    }
+    at = read_values(at, film.differences_.sums(), pairs);
+    read_values(at, film.differences_.apart(), pairs);
     return film;
   }
 
@@ -196,12 +210,22 @@ Film read_film_header(const std::filesystem::path& file) {
   return FilmFile::parse_head(file.string(), head, data_begin);
 }
 
+void write_film(const std::vector<std::filesystem::path>& files, const Film& film, const Display& display,
+                const Metadata& metadata, int threads) {
+  std::optional<Image> image;
+  for (const auto& file : files) {
+    if (is_film_format(file)) {
+      write_file(file, FilmFile::bytes_of(film));
+      continue;
+    }
+    if (!image) image = image_of(film, threads);
+    write_image(file, *image, display, metadata, noise_of(film));
+  }
+}
+
 void write_film(const std::filesystem::path& file, const Film& film, const Display& display,
                 const Metadata& metadata) {
-  if (is_film_format(file))
-    write_file(file, FilmFile::bytes_of(film));
-  else
-    write_image(file, film.image(), display, metadata, noise_of(film));
+  write_film(std::vector{file}, film, display, metadata);
 }
 
 void write_checkpoint(const std::filesystem::path& file, const Film& film) {

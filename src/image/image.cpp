@@ -134,7 +134,7 @@ const Format& writable_format_of(const std::filesystem::path& file) {
                                         "; written are " + suffixes(is_written));
 }
 
-ImageFile image_of_film(const Film& film) { return {film.image(), false, describe(film), noise_of(film)}; }
+ImageFile image_of_film(const Film& film) { return {image_of(film), false, describe(film), noise_of(film)}; }
 
 std::vector<float> alpha_of(const Raster& raster) {
   std::vector<float> alpha;

@@ -25,6 +25,7 @@ struct BandWork {
   /// fits the window, and a stop within a pass leaves a film that cannot be resumed.
   bool overlap = false;
   bool splats = false;  ///< the film must keep them; bands may add them anywhere, under locks of their own
+  bool differences = false;  ///< the film must keep them
   /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
   /// image. Called by several threads at a time, for different bands.
   std::function<void(int y0, int y1, const SampleRange& samples, const SampleMap& map, Film& film,
@@ -39,8 +40,9 @@ class PreparedIntegrator {
   /// The work of one render. `job`, whose shaping options are those of the preparation, and this object must
   /// outlive it.
   virtual BandWork work(const Job& job) const = 0;
-  /// What was decided for the scene and changes samples, as items of the film key, each after "; ".
-  virtual std::string decisions() const { return {}; }
+  /// What was decided for the scene and the job and changes samples, as items of the film key, each after ";
+  /// ".
+  virtual std::string decisions(const Job&) const { return {}; }
   /// Fills in instruction set, kernel, what is not needed, the tree, and the seconds of the pilot.
   virtual void describe(RenderStats& stats) const = 0;
 };

@@ -62,6 +62,14 @@ void check_target(const RenderOptions& o, Fault fault) {
   require(fault == Fault::none, "--target-error: cannot go with --fault; give --spp");
 }
 
+/// Reconstruction is of shared paths, whose samples are planned beforehand.
+void check_reconstruction(const RenderOptions& o) {
+  if (o.reconstruct != Switch::on) return;
+  require(o.reuse.automatic || o.reuse.width > 0,
+          "--reconstruct on: needs paths that pixels share; leave out --reuse off");
+  require(!o.target_error, "--reconstruct on: cannot go with --target-error; leave one out");
+}
+
 /// What castRay does not have is refused, never ignored.
 void check_reference(const RenderOptions& o) {
   const bool by_epsilon = o.integrator == Integrator::automatic;
@@ -74,6 +82,7 @@ void check_reference(const RenderOptions& o) {
   require(o.reuse.automatic || o.reuse.width == 0,
           "--reuse: " + reference + " shares no paths" + leave + (by_epsilon ? "" : " or off"));
   require(o.caustics != Switch::on, "--caustics on: " + reference + " has no paths from lights" + leave);
+  require(o.reconstruct != Switch::on, "--reconstruct on: " + reference + " shares no paths" + leave);
   require(o.isa == "auto" || o.isa == "scalar",
           "--isa " + o.isa + ": " + reference + " has no vector kernels" + leave);
 }
@@ -145,6 +154,7 @@ Job make_job(const SceneFacts& scene, const RenderOptions& options, Fault fault)
   check_samples(job.samples);
   check_numbers(options);
   check_target(options, fault);
+  check_reconstruction(options);
   require(scene.triangles > 0, fmt::format("{}: the scene has no triangle", scene.file));
   job.options.integrator = choose_integrator(options, fault);
   job.threads = options.threads > 0 ? options.threads : available_threads();

@@ -28,6 +28,7 @@ const char* misfit(const Job& job, const Job& prepared) {
   if (a.build != b.build) return "--build";
   if (a.generic != b.generic) return "--generic";
   if (a.reuse != b.reuse) return "--reuse";
+  if ((a.reconstruct == Switch::on) != (b.reconstruct == Switch::on)) return "--reconstruct";
   return nullptr;
 }
 
@@ -40,7 +41,7 @@ RenderResult render_samples(const PreparedScene& scene, const RenderOptions& opt
     throw InputError(fmt::format("{}: the scene was prepared for another one; prepare it anew", option));
   if (options.target_error && start)
     throw InputError("--target-error: cannot go on from an earlier film; leave out the target or the film");
-  job.key += prepared.integrator->decisions();
+  job.key += prepared.integrator->decisions(job);
   RenderResult result = take_samples(job, progress, start, prepared.integrator->work(job));
   prepared.integrator->describe(result.stats);
   return result;
@@ -77,9 +78,12 @@ RenderResult render_replicates(const PreparedScene& scene, const RenderOptions& 
   const SampleRange range = first_range(options, replicates);
   if (range.first % replicate_length + range.count > replicate_length)
     throw InputError(fmt::format("--replicates: each may hold {} samples at most", replicate_length));
+  if (options.reconstruct == Switch::on)
+    throw InputError("--reconstruct on: cannot go with --replicates; leave one out");
   RenderResult whole;
   for (std::uint64_t r = 0; r < replicates; ++r) {
     RenderOptions part_options = options;
+    part_options.reconstruct = Switch::off;
     part_options.samples = SampleRange{range.first + r * replicate_length, range.count};
     const auto report = [&](const Progress& p) {
       const double fraction = (static_cast<double>(r) + p.fraction) / static_cast<double>(replicates);

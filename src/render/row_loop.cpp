@@ -98,7 +98,8 @@ class ExceptionKeeper {
 /// The state of one run, shared by its threads.
 class RowLoop {
  public:
-  RowLoop(const Job& job, const ProgressCallback& progress, const Film* start, const SampleMap& map)
+  RowLoop(const Job& job, const ProgressCallback& progress, const Film* start, const SampleMap& map,
+          bool differences)
       : time_limit_(job.options.time_limit.value_or(std::numeric_limits<double>::infinity())),
         whole_passes_(job.options.whole_passes),
         progress_(progress),
@@ -110,6 +111,7 @@ class RowLoop {
     result_.film.key = job.key;
     result_.film.planned = job.options.planned;
     finished_.resize(static_cast<std::size_t>(window_.height()));
+    if (differences) result_.film.keep_differences();
     if (start) resume(*start);
     result_.stats.threads = job.threads;
     for (int y = window_.y0; y < window_.y1; ++y)
@@ -275,7 +277,7 @@ class RowLoop {
 
 RenderResult run_rows(const Job& job, const ProgressCallback& progress, const Film* start,
                       const SampleMap& map, const BandWork& work) {
-  return RowLoop(job, progress, start, map).run(work);
+  return RowLoop(job, progress, start, map, work.differences).run(work);
 }
 
 void add_stats(RenderStats& sum, const RenderStats& earlier) {

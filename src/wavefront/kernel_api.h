@@ -69,6 +69,7 @@ struct TileResult {
   uint32_t *x, *y;  ///< as signed numbers, for pixels left of or above the image
   float* radiance[3];
   uint64_t rays, gathered, evaluated;
+  float* emitted[3] = {};  ///< if not null: the part of `radiance` that the camera sees directly
 };
 
 /// Some of the paths from lights of one sample, at most batch_size, that have numbers from `first` on, a

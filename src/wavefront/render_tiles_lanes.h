@@ -7,6 +7,14 @@
 
 namespace castray::CASTRAY_ISA {
 
+CASTRAY_INLINE void copy_radiance(const Radiance& from, int count, float* const (&to)[3]) {
+  for (int i = 0; i < count; ++i) {
+    to[0][i] = from.x[i];
+    to[1][i] = from.y[i];
+    to[2][i] = from.z[i];
+  }
+}
+
 template <class Geometry, uint32_t features>
 CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& options, const TileJob& job,
                                  void* scratch, TileResult& result) {
@@ -27,17 +35,14 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
     closest<Geometry>(c, s.paths, true, s.hits);
   if (first.t && !first.known) return keep_first_hits(first, result, s.paths.count, s.hits);
   surfaces<Geometry, features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
+  if (result.emitted[0]) copy_radiance(s.radiance, job.tiles * tile_pixels, result.emitted);
   keep_direct(c, s);
   if (options.suffixes > 0 && may_have_edges(options, 2))
     share<Geometry, features>(c, s);
   else
     follow<Geometry, features>(c, s, s.camera, 0, first_roulette_vertex);
   clamp_indirect(c, s);
-  for (int i = 0; i < job.tiles * tile_pixels; ++i) {
-    result.radiance[0][i] = s.radiance.x[i];
-    result.radiance[1][i] = s.radiance.y[i];
-    result.radiance[2][i] = s.radiance.z[i];
-  }
+  copy_radiance(s.radiance, job.tiles * tile_pixels, result.radiance);
   result.rays += c.rays;
   result.gathered += c.gathered;
   result.evaluated += c.evaluated;

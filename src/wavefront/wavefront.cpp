@@ -32,28 +32,38 @@ struct FreeScratch {
 /// What a thread works in.
 struct Workplace {
   std::unique_ptr<void, FreeScratch> scratch;
-  std::vector<float> radiance;
+  std::vector<float> radiance, emitted;
   std::vector<std::uint32_t> place;
 
   explicit Workplace(const KernelApi& kernel)
       : scratch(::operator new(kernel.scratch_bytes, scratch_alignment)),
         radiance(3 * batch_size),
+        emitted(3 * batch_size),
         place(2 * batch_size) {
     std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
   }
-  TileResult result() {
-    return {
+  TileResult result(bool with_emitted) {
+    TileResult result{
         &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0,
         0};
+    for (std::size_t c = 0; with_emitted && c < 3; ++c) result.emitted[c] = &emitted[c * batch_size];
+    return result;
   }
 };
+
+/// Whether the film keeps what an image is reconstructed from. However many samples are asked for: those of
+/// parts and of longer renders are the same.
+bool keeps_differences(const Job& job, const Plan& plan) {
+  const RenderOptions& o = job.options;
+  return plan.suffixes > 0 && o.reconstruct != Switch::off && !o.target_error && o.max_depth != 1;
+}
 
 /// Splats are spread over their pixels, and no sample's part to clamp.
 bool traces_light_paths(const RenderOptions& options, const Plan& plan) {
   return plan.light_paths && options.jitter && !options.clamp_indirect;
 }
 
-KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
+KernelOptions kernel_options(const RenderOptions& options, const Plan& plan, bool differences) {
   KernelOptions k{};
   k.sobol = options.sampler == SamplerKind::sobol;
   k.jitter = options.jitter;
@@ -69,15 +79,29 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan) {
   k.environment_points = plan.environment_points;
   // from then on so many grids lie over each other that none can be told
   constexpr std::uint64_t few_samples = 4;
-  k.ragged = plan.suffixes > 0 ? few_samples : 0;
+  k.ragged = plan.suffixes > 0 && !differences ? few_samples : 0;
   k.seed =
       hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
   return k;
 }
 
+Vec3f radiance_of(const TileResult& result, int i) {
+  return {result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
+}
+
 /// How far a sample's tiles reach over their edges.
 int reach_of(const KernelOptions& options, std::uint64_t sample) {
   return sample < options.ragged ? ragged_reach : 0;
+}
+
+/// The sample of a half of the film that keeps differences: even and odd indices count up two sequences with
+/// scrambles of their own, so that the halves are independent. Replicates stay what they are.
+std::uint64_t sample_of_half(std::uint64_t sample) {
+  constexpr std::uint64_t within = replicate_length - 1;
+  return (sample & ~within) | (sample & within) >> 1;
+}
+std::uint32_t seed_of_half(std::uint32_t seed, std::uint64_t sample) {
+  return hash_combine(seed, 0x4a1fu + static_cast<std::uint32_t>(sample & 1));
 }
 
 /// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
@@ -104,15 +128,16 @@ struct TileGrid {
     y1 = tile_of(window.y1 - 1 + shift_y + reach) + 1;
   }
 
-  /// The first tiles of row y, from x on, of which pixels want the sample: none, if the tile at x has none.
-  TileJob job(int x, int y, std::uint64_t sample, const SampleMap& map) const {
+  /// The first tiles of row y, from x on and before `end`, of which pixels want the sample: none, if the tile
+  /// at x has none.
+  TileJob job(int x, int end, int y, std::uint64_t sample, const SampleMap& map) const {
     const int left = x * tile_size - shift_x, top = y * tile_size - shift_y;
     const auto wanted = [&](int tile) {
       const int at = left + tile * tile_size;
       return map.wants_any(at - reach, top - reach, at + tile_size + reach, top + tile_size + reach, sample);
     };
     int tiles = 0;
-    while (tiles < std::min(max_tiles, x1 - x) && wanted(tiles)) ++tiles;
+    while (tiles < std::min(max_tiles, end - x) && wanted(tiles)) ++tiles;
     return {left, top, x, y, tiles, sample};
   }
 };
@@ -123,7 +148,8 @@ class WavefrontRun {
   WavefrontRun(const KernelApi& kernel, const KernelScene& scene, const Plan& plan, const Job& job)
       : window_(job.window),
         scene_(scene),
-        options_(kernel_options(job.options, plan)),
+        differences_(keeps_differences(job, plan)),
+        options_(kernel_options(job.options, plan, differences_)),
         render_tiles_(kernel.render_tiles[plan.features]),
         trace_light_paths_(options_.light_paths ? kernel.trace_light_paths[plan.features] : nullptr),
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
@@ -133,22 +159,34 @@ class WavefrontRun {
   }
 
   /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
-  /// bands.
+  /// bands. A few columns after the other, each with all samples, so that their sums stay in the cache.
   void render_band(int row, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
     Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
-    TileResult result = workplace.result();
-    for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
-      const TileGrid grid(window_, options_, s);
-      for (int y = grid.y0 + row; y < grid.y1; y += bands_)
-        for (int x = grid.x0; x < grid.x1;) {
-          const TileJob job = grid.job(x, y, s, map);
-          x += std::max(job.tiles, 1);
-          if (job.tiles == 0) continue;
-          render_tiles_(scene_, options_, job, workplace.scratch.get(), result);
-          add(job, result, map, film, stats);
-        }
-      if (trace_light_paths_) trace_light_paths(row, s, workplace, film, stats);
-    }
+    TileResult result = workplace.result(differences_);
+    const int columns = (window_.width() + 2 * ragged_reach) / tile_size + 2;
+    for (int column = 0; column < columns; column += max_tiles)
+      for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
+        KernelOptions options = options_;
+        if (differences_) options.seed = seed_of_half(options_.seed, s);
+        const std::uint64_t drawn = differences_ ? sample_of_half(s) : s;
+        const TileGrid grid(window_, options, drawn);
+        const int x0 = grid.x0 + column, x1 = std::min(x0 + max_tiles, grid.x1);
+        for (int y = grid.y0 + row; y < grid.y1; y += bands_)
+          for (int x = x0; x < x1;) {
+            TileJob job = grid.job(x, x1, y, s, map);
+            x += std::max(job.tiles, 1);
+            if (job.tiles == 0) continue;
+            job.sample = drawn;
+            render_tiles_(scene_, options, job, workplace.scratch.get(), result);
+            job.sample = s;
+            if (differences_)
+              add_tiles(job, result, map, film, stats);
+            else
+              add(job, result, map, film, stats);
+          }
+      }
+    for (std::uint64_t s = samples.first; trace_light_paths_ && s < samples.first + samples.count; ++s)
+      trace_light_paths(row, s, workplace, film, stats);
     stats.rays += result.rays;
   }
 
@@ -173,7 +211,7 @@ class WavefrontRun {
 #pragma omp parallel for schedule(dynamic) num_threads(static_cast <int>(workplaces_.size()))
     for (int y = 0; y < table.height; y += tile_size) {
       Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
-      TileResult result = workplace.result();
+      TileResult result = workplace.result(false);
       for (int x = 0; x < table.width; x += max_tiles * tile_size) {
         const TileJob job{table.x0 + x, table.y0 + y, 0, 0, max_tiles, options_.ragged};
         render_tiles_(scene_, options_, job, workplace.scratch.get(), result);
@@ -182,11 +220,21 @@ class WavefrontRun {
     table.known = true;
   }
 
+  int lock_of(int y) const { return (y - window_.y0) / tile_size; }
+
+  /// Whether the sample of pixel (x,y) counts: it lies in the window, is wanted, and is finite, or is told.
+  bool keeps(int x, int y, std::uint64_t sample, const Vec3f& radiance, const SampleMap& map,
+             RowStats& stats) const {
+    if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || !map.wants(x, y, sample))
+      return false;
+    if (!is_finite(radiance)) stats.nonfinite.push_back({x, y, sample});
+    return is_finite(radiance);
+  }
+
   /// Adds a job's samples to the film where they lie in its window and are wanted, under the locks of the
   /// rows they share with other jobs.
   void add(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film, RowStats& stats) {
     const int count = job.tiles * tile_pixels;
-    const auto lock_of = [&](int y) { return (y - window_.y0) / tile_size; };
     const int reach = reach_of(options_, job.sample);
     const int first = std::max(job.y - reach, window_.y0);
     const int last = std::min(job.y + tile_size + reach, window_.y1) - 1;
@@ -194,14 +242,9 @@ class WavefrontRun {
       const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
       for (int i = 0; i < count; ++i) {
         const auto x = static_cast<int>(result.x[i]), y = static_cast<int>(result.y[i]);
-        if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || lock_of(y) != l)
-          continue;
-        if (!map.wants(x, y, job.sample)) continue;
-        const Vec3f radiance{result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
-        if (is_finite(radiance))
-          film.add(x, y, radiance);
-        else
-          stats.nonfinite.push_back({x, y, job.sample});
+        if (y < window_.y0 || lock_of(y) != l) continue;
+        const Vec3f radiance = radiance_of(result, i);
+        if (keeps(x, y, job.sample, radiance, map, stats)) film.add(x, y, radiance);
       }
     }
   }
@@ -243,8 +286,42 @@ class WavefrontRun {
     film.add_splat(x, y, radiance);
   }
 
+  /// The same for a film that keeps differences: whole tiles.
+  void add_tiles(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film,
+                 RowStats& stats) {
+    TileSamples tiles[max_tiles];
+    for (int k = 0; k < job.tiles; ++k) tiles[k] = tile_samples(job, k, result, map, stats);
+    const int first = std::max(job.y, window_.y0), end = std::min(job.y + tile_size, window_.y1);
+    for (int y = first; y < end;) {
+      const int l = lock_of(y), next = std::min(window_.y0 + (l + 1) * tile_size, end);
+      const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
+      for (int k = 0; k < job.tiles; ++k) film.add(tiles[k], y, next);
+      y = next;
+    }
+  }
+
+  TileSamples tile_samples(const TileJob& job, int k, const TileResult& result, const SampleMap& map,
+                           RowStats& stats) const {
+    const int first = k * tile_pixels;
+    TileSamples tile{.x = job.x + k * tile_size, .y = job.y, .sample = job.sample};
+    for (int c = 0; c < 3; ++c) {
+      tile.radiance[c] = result.radiance[c] + first;
+      tile.emitted[c] = result.emitted[c] + first;
+    }
+    for (int i = 0; i < tile_pixels; ++i) {
+      const int x = tile.x + i % tile_size, y = tile.y + i / tile_size;
+      const std::uint64_t bit = std::uint64_t{1} << i;
+      const Vec3f radiance = radiance_of(result, first + i);
+      if (x < 0 || x >= window_.full_width || y < 0 || y >= window_.full_height) continue;
+      if (keeps(x, y, job.sample, radiance, map, stats)) tile.kept |= bit;
+      if (is_finite(radiance)) tile.valid |= bit;
+    }
+    return tile;
+  }
+
   Window window_;
   KernelScene scene_;
+  bool differences_;  ///< kept by the film
   KernelOptions options_;
   RenderTiles render_tiles_;
   TraceLightPaths trace_light_paths_;  ///< or null
@@ -267,23 +344,26 @@ class Wavefront final : public PreparedIntegrator {
       as_pilot([&] { learn_lights(scene, job); });
     if (job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_))
       as_pilot([&] { settle_caustics(job); });
-    if (job.options.reuse.automatic) as_pilot([&] { settle_sharing(job); });
+    if (job.options.reuse.automatic && job.options.reconstruct != Switch::on)
+      as_pilot([&] { settle_sharing(job); });
   }
 
   BandWork work(const Job& job) const override {
     const auto run = std::make_shared<WavefrontRun>(kernel_, data_.view, plan_, job);
     const int top = job.window.y0;
     return {
-        tile_size, true, traces_light_paths(job.options, plan_),
+        tile_size, true, traces_light_paths(job.options, plan_), keeps_differences(job, plan_),
         [run, top](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film,
                    RowStats& stats) { run->render_band((y0 - top) / tile_size, samples, map, film, stats); }};
   }
 
   /// Instruction sets count rays differently in the last digit, so a near tie may fall either way.
-  std::string decisions() const override {
-    return std::string(plan_.light_paths ? "; light-paths=on" : "") +
-           (plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off") +
-           (plan_.light_regions > 0 ? "; light-choice=learned" : "");
+  std::string decisions(const Job& job) const override {
+    std::string items = plan_.light_paths ? "; light-paths=on" : "";
+    items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
+    if (keeps_differences(job, plan_)) items += "; reconstruct=on";
+    if (plan_.light_regions > 0) items += "; light-choice=learned";
+    return items;
   }
 
   void describe(RenderStats& stats) const override {
@@ -346,8 +426,8 @@ class Wavefront final : public PreparedIntegrator {
   void settle_caustics(const Job& job) {
     PilotJobs jobs(*this, job.threads);
     const std::optional<double> gain =
-        gain_of_light_paths(kernel_options(job.options, plan_), job.window.full_width, job.window.full_height,
-                            job.threads, jobs.tiles(), jobs.light_paths());
+        gain_of_light_paths(kernel_options(job.options, plan_, false), job.window.full_width,
+                            job.window.full_height, job.threads, jobs.tiles(), jobs.light_paths());
     if (gain) choose_caustics(plan_, *gain);
   }
 
@@ -355,8 +435,8 @@ class Wavefront final : public PreparedIntegrator {
   void settle_sharing(const Job& job) {
     PilotJobs jobs(*this, job.threads);
     const std::optional<double> gain =
-        gain_of_sharing(kernel_options(job.options, plan_), job.window.full_width, job.window.full_height,
-                        job.threads, jobs.tiles());
+        gain_of_sharing(kernel_options(job.options, plan_, false), job.window.full_width,
+                        job.window.full_height, job.threads, jobs.tiles());
     if (gain) choose_by_pilot(plan_, *gain);
   }
 

@@ -21,7 +21,7 @@ inline Blocks blocks_of(const Scene& scene, RenderOptions options, std::uint64_t
     options.seed = 1000 + seed;
     const RenderResult result = render(scene, options);
     REQUIRE(result.film.nonfinite_samples == 0);
-    blocks.push_back(block_means(result.film.image(), block));
+    blocks.push_back(block_means(image_of(result.film), block));
   }
   return blocks;
 }

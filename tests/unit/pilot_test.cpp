@@ -161,7 +161,7 @@ TEST_CASE(
   CHECK(pixels(box, options) == pixels(box, shared));
   const RenderResult alone = render(mirrors, options);
   CHECK_THAT(alone.film.key, Catch::EndsWith("sharing=off"));
-  CHECK_THAT(render(box, options).film.key, Catch::EndsWith("sharing=on"));
+  CHECK_THAT(render(box, options).film.key, Catch::Contains("sharing=on"));
   CHECK(alone.stats.pilot_seconds > 0);
   CHECK(alone.stats.render_seconds > alone.stats.pilot_seconds);
   RenderOptions nothing_to_choose = plain;

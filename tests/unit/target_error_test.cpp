@@ -24,6 +24,7 @@ RenderOptions to_target(double target, std::uint64_t most = 4096) {
 
 RenderOptions without_target(RenderOptions options, std::uint64_t spp) {
   options.target_error.reset();
+  options.reconstruct = Switch::off;
   options.spp = spp;
   return options;
 }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "image/half_film.h"
+
+namespace castray {
+
+/// What to add to the means of one half of the samples, from its own differences and with weights of the
+/// other half. Weights of its own would make the image darker.
+///
+/// Gradient-domain path reusing (Bauszat, Petitjean, Eisemann 2017), a control variate in image space
+/// (Rousselle, Jarosz, Novak 2016). docs/transport.md has the formula.
+PixelPlanes corrections(const HalfFilm& data, const HalfFilm& other, int width, int height, int threads);
+
+}  // namespace castray

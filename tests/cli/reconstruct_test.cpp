@@ -1,0 +1,70 @@
+// Images from differences, as the command line makes them.
+#include <catch2/catch.hpp>
+
+#include "castray/image.h"
+#include "core/files.h"
+#include "run_castray.h"
+
+using namespace castray;
+using Words = std::vector<std::string>;
+
+namespace {
+
+const std::string box = CASTRAY_ROOT "/scenes/cornell_box.json";
+
+Words render(const Words& more) {
+  Words words = {"render", box, "-q", "--size", "48x40", "--seed", "3", "--reconstruct", "auto"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("render, merge, convert and compare make the same image of the same film") {
+  const TemporaryFolder folder;
+  const auto run = [&](const Words& words) { return run_castray(words, folder.path()); };
+  REQUIRE(run(render({"--spp", "8", "-t", "1", "-o", "a.pfm", "-o", "a.film"})).exit_code == 0);
+  REQUIRE(run(render({"--samples", "0:3", "-t", "3", "-o", "1.film"})).exit_code == 0);
+  REQUIRE(run(render({"--samples", "3:5", "-o", "2.film"})).exit_code == 0);
+  REQUIRE(run({"merge", "2.film", "1.film", "-o", "m.film", "-o", "m.pfm"}).exit_code == 0);
+  REQUIRE(run(render({"--spp", "3", "--checkpoint", "k.film"})).exit_code == 0);
+  REQUIRE(run(render({"--spp", "8", "--checkpoint", "k.film", "--resume", "-o", "r.pfm"})).exit_code == 0);
+  CHECK(read_file(folder / "r.pfm") == read_file(folder / "a.pfm"));
+  REQUIRE(run({"convert", "a.film", "-o", "c.pfm"}).exit_code == 0);
+  const std::string image = read_file(folder / "a.pfm");
+  CHECK(read_file(folder / "m.film") == read_file(folder / "a.film"));
+  CHECK(read_file(folder / "m.pfm") == image);
+  CHECK(read_file(folder / "c.pfm") == image);
+  CHECK(run({"compare", "a.film", "m.pfm", "--max", "mse=0"}).exit_code == 0);
+  CHECK_THAT(run({"info", "a.film"}).out, Catch::Contains("means and differences"));
+}
+
+TEST_CASE("without reconstruction a film has no differences, and an image is the means") {
+  const TemporaryFolder folder;
+  const auto size_of = [&](const Words& more) {
+    Words words = {"render", box, "-q", "--size", "48x40", "--spp", "4", "-o", "a.film"};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(run_castray(words, folder.path()).exit_code == 0);
+    return std::filesystem::file_size(folder / "a.film");
+  };
+  constexpr std::size_t pixels = 48 * 40;
+  CHECK(size_of({"--reconstruct", "auto"}) > 372 * pixels);
+  for (const Words& plain :
+       {Words{}, Words{"--reconstruct", "auto", "--reuse", "off"}, Words{"--reconstruct", "off"}})
+    CHECK(size_of(plain) < 53 * pixels + 1000);
+}
+
+TEST_CASE("reconstruction is refused where there is nothing to reconstruct from") {
+  const auto refused = [](const Words& more, const std::string& words) {
+    Words command = {"render", box, "-q", "--size", "48x40", "--reconstruct", "on", "-o", "x.pfm"};
+    command.insert(command.end(), more.begin(), more.end());
+    const RunResult result = run_castray(command);
+    CHECK(result.exit_code == 2);
+    CHECK(result.error_lines() == 1);
+    CHECK_THAT(result.err, Catch::Contains("--reconstruct on") && Catch::Contains(words));
+  };
+  refused({"--reuse", "off"}, "leave out --reuse off");
+  refused({"--integrator", "reference"}, "the reference integrator");
+  refused({"--target-error", "0.1"}, "--target-error");
+  refused({"--replicates", "2", "--spp", "4"}, "--replicates");
+}

@@ -1,0 +1,107 @@
+#include "image/reconstruction.h"
+
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+
+#include "box_scenes.h"
+#include "castray/render.h"
+#include "reference_images.h"
+
+using namespace castray;
+using namespace castray::test;
+
+// An image and the mean of its samples, which has no bias (wavefront_test.cpp), must agree on average. The
+// samples are the same, so that small differences show.
+
+namespace {
+
+constexpr int side = 64, block = 8;
+
+RenderOptions options_of(std::uint64_t spp, std::uint64_t seed) {
+  RenderOptions options;
+  options.width = options.height = side;
+  options.spp = spp;
+  options.seed = seed;
+  options.reconstruct = Switch::on;
+  return options;
+}
+
+struct Corrections {
+  std::vector<std::vector<double>> blocks;  ///< by render
+  Mean relative;                            ///< of all pixels, over that of the image
+};
+
+double mean_of(const Image& image) {
+  double sum = 0;
+  for (const Vec3f& p : image.pixels) sum += luminance(Vec3d(p));
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+Corrections corrections_of(const Scene& scene, std::uint64_t spp, std::uint64_t seeds) {
+  Corrections result;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const Film film = render(scene, options_of(spp, 500 + seed)).film;
+    Image difference = image_of(film);
+    const Image mean = film.image();
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i)
+      difference.pixels[i] = difference.pixels[i] - mean.pixels[i];
+    result.relative.add(mean_of(difference) / mean_of(mean));
+    result.blocks.push_back(block_means(difference, block));
+  }
+  return result;
+}
+
+/// No block is off, at a false-alarm rate of 1e-5 a scene, nor are all of them a little.
+void check_unbiased(const std::string& name, const Corrections& corrections) {
+  const std::vector<double> nothing(corrections.blocks[0].size());
+  const BlockScores scores = block_scores(corrections.blocks, nothing, nothing);
+  CAPTURE(name, scores.rms, scores.largest, corrections.relative.mean(), corrections.relative.error());
+  CHECK(scores.largest < score_limit(scores.count, 1e-5));
+  CHECK(scores.rms < 1.25);
+  CHECK(std::abs(corrections.relative.mean()) <= 4.5 * corrections.relative.error());
+}
+
+}  // namespace
+
+TEST_CASE("reconstructed images have the mean of their samples in every block", "[statistical]") {
+  for (const char* name : {"cornell_box", "cornell_conductor", "cornell_lights", "kinds/sun_and_sky",
+                           "kinds/glass_ball", "kinds/facing_mirrors", "kinds/tiny_lamp"})
+    check_unbiased(name, corrections_of(standard_scene(name), 6, 40));
+  check_unbiased("mesh", corrections_of(box_with_mesh(), 6, 40));
+  check_unbiased("coverage", corrections_of(box_with([](Material& m) { m.coverage = 0.6; }), 6, 40));
+  check_unbiased("textures", corrections_of(with_detail(standard_scene("cornell_box")), 6, 40));
+}
+
+TEST_CASE("many seeds show no bias of reconstructed images, in any scene", "[statistical][long]") {
+  for (const std::string folder : {"", "kinds/"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(CASTRAY_ROOT) + "/scenes/" + folder)) {
+      const std::string name = entry.path().stem().string();
+      if (entry.path().extension() != ".json" || name == "castray.schema") continue;
+      for (const std::uint64_t spp : {4u, 16u}) {
+        const Corrections corrections = corrections_of(standard_scene(folder + name), spp, 512);
+        check_unbiased(name, corrections);
+        CHECK(std::abs(corrections.relative.mean()) < 1e-4 + 3 * corrections.relative.error());
+      }
+    }
+}
+
+TEST_CASE("weights of the same samples would make a render darker", "[statistical]") {
+  const Scene scene = standard_scene("cornell_box");
+  Mean bias;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const Film film = render(scene, options_of(16, 900 + seed)).film;
+    const HalfFilm half(film, 0, 1);
+    const PixelPlanes correction = corrections(half, half, side, side, 1);
+    double sum = 0, brightness = 0;
+    for (int y = 0; y < side; ++y)
+      for (int x = 0; x < side; ++x) {
+        sum += static_cast<double>(correction[1].row(y)[x]);
+        brightness += film.mean(x, y).y;
+      }
+    bias.add(sum / brightness);
+  }
+  CAPTURE(bias.mean(), bias.error());
+  CHECK(bias.mean() < -5 * bias.error());
+}
