@@ -36,7 +36,7 @@ TEST_CASE(
     "a time limit alone is what was asked for: the scene's spp is no limit, every output tells what was "
     "taken") {
   const TemporaryFolder folder;
-  const Outcome o = render_for(folder, {"--time-limit", "2"});
+  const Outcome o = render_for(folder, {"--time-limit", "3", "--threads", "1"});
   CHECK(o.run.exit_code == 0);
   CHECK(o.stats["stopped"] == "time-limit");
   CHECK(o.stats["spp"] > 64);
