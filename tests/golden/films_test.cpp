@@ -26,7 +26,7 @@ Film render_film(const Scene& scene, const RenderOptions& options) {
 }
 
 /// As an .exr file holds it.
-ImageFile image_of(const Film& film) { return {film.image(), false, describe(film), noise_of(film)}; }
+ImageFile image_file_of(const Film& film) { return {film.image(), false, describe(film), noise_of(film)}; }
 
 bool available(const std::string& isa) {
   if (isa == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -80,10 +80,10 @@ TEST_CASE("a change of 1 % of one material's kd is caught at 64 spp") {
   }
   const Film changed = render_film(change("white"), options_of(128, 2));
   CHECK(test_noise(changed, before, 0.01).differs());
-  CHECK(test_noise(image_of(changed), image_of(before), 0.01).differs());
+  CHECK(test_noise(image_file_of(changed), image_file_of(before), 0.01).differs());
   const Film unchanged = render_film(scene, options_of(128, 2));
   CHECK_FALSE(test_noise(unchanged, before, 0.01).differs());
-  CHECK_FALSE(test_noise(image_of(unchanged), image_of(before), 0.01).differs());
+  CHECK_FALSE(test_noise(image_file_of(unchanged), image_file_of(before), 0.01).differs());
 }
 
 // At alpha = 0.05 at most 50 + 4 sqrt(47.5) = 77 of 1000 pairs of seeds may raise an alarm; none at all would
@@ -100,7 +100,7 @@ TEST_CASE("a thousand unchanged seeds raise no more than the stated rate of alar
     options.seed = 2 * pair + 1;
     const Film b = render_replicates(scene, options, 8).film;
     alarms += test_noise(a, b, 0.05).differs();
-    alarms_of_images += test_noise(image_of(a), image_of(b), 0.05).differs();
+    alarms_of_images += test_noise(image_file_of(a), image_file_of(b), 0.05).differs();
   }
   UNSCOPED_INFO(name << ": " << alarms << " alarms of 1000 by films, " << alarms_of_images << " by images");
   CHECK(alarms <= 77);
