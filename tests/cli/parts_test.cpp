@@ -144,7 +144,7 @@ TEST_CASE("crops with replicates merge to the bytes of the whole") {
   CHECK(read_file(folder / "m.film") == read_file(folder / "whole.film"));
 }
 
-TEST_CASE("--part auto is what the engine says") {
+TEST_CASE("the part of --part auto is what the engine says") {
   const TemporaryFolder folder;
   struct Case {
     Variables variables;
