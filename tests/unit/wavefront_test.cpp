@@ -37,6 +37,24 @@ std::vector<Vec3f> pixels(const Scene& scene, const RenderOptions& options) {
   return render(scene, options).film.image().pixels;
 }
 
+/// Threads, sample ranges and a crop give the samples of the whole film.
+void check_parts(const Scene& scene, RenderOptions options, const Film& whole) {
+  options.threads = 3;
+  CHECK(bytes(render(scene, options).film) == bytes(whole));
+
+  options.samples = SampleRange{3, 1};
+  Film merged = render(scene, options).film;
+  options.samples = SampleRange{0, 3};
+  merged.merge(render(scene, options).film);
+  CHECK(bytes(merged) == bytes(whole));
+
+  options.samples.reset();
+  options.crop = Window{0, 0, 11, 6, 30, 29};
+  const Film crop = render(scene, options).film;
+  for (int y = 6; y < 29; ++y)
+    for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.mean(x, y));
+}
+
 }  // namespace
 
 TEST_CASE("instruction sets with fused multiply-add give the same bytes") {
@@ -81,20 +99,7 @@ TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") 
     options.jitter = jitter;
     options.threads = 1;
     const RenderResult whole = render(scene, options);
-    options.threads = 3;
-    CHECK(bytes(render(scene, options).film) == bytes(whole.film));
-
-    options.samples = SampleRange{3, 1};
-    Film merged = render(scene, options).film;
-    options.samples = SampleRange{0, 3};
-    merged.merge(render(scene, options).film);
-    CHECK(bytes(merged) == bytes(whole.film));
-
-    options.samples.reset();
-    options.crop = Window{0, 0, 11, 6, 30, 29};
-    const Film crop = render(scene, options).film;
-    for (int y = 6; y < 29; ++y)
-      for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.film.mean(x, y));
+    check_parts(scene, options, whole.film);
   }
 }
 
@@ -105,22 +110,8 @@ TEST_CASE("threads, crops, sample ranges and instruction sets do not show in cau
   const RenderResult whole = render(scene, options);
   CHECK(whole.film.light_paths(0, 0) >= 4 * 45 * 37);
   CHECK_THAT(whole.film.key, Catch::Contains("; light-paths=on"));
-  options.threads = 3;
-  CHECK(bytes(render(scene, options).film) == bytes(whole.film));
+  check_parts(scene, options, whole.film);
 
-  options.samples = SampleRange{3, 1};
-  Film merged = render(scene, options).film;
-  options.samples = SampleRange{0, 3};
-  merged.merge(render(scene, options).film);
-  CHECK(bytes(merged) == bytes(whole.film));
-
-  options.samples.reset();
-  options.crop = Window{0, 0, 11, 6, 30, 29};
-  const Film crop = render(scene, options).film;
-  for (int y = 6; y < 29; ++y)
-    for (int x = 11; x < 30; ++x) REQUIRE(crop.mean(x, y) == whole.film.mean(x, y));
-
-  options.crop.reset();
   for (const std::string& set : available_sets()) {
     options.isa = set;
     if (has_fma(set) && has_fma(whole.stats.isa))
