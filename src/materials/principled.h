@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <ranges>
+#include <iterator>
 
 #include "materials/bsdf_sample.h"
 #include "materials/descriptor.h"
@@ -100,8 +100,8 @@ struct Principled {
  private:
   T left_by_sheen(const Vec3<T>& w) const {
     T albedo_of_sheen = 0;
-    for (const float term : std::views::reverse(sheen_albedo_terms))
-      albedo_of_sheen = albedo_of_sheen * w.z + T(term);
+    for (std::size_t i = std::size(sheen_albedo_terms); i-- > 0;)
+      albedo_of_sheen = albedo_of_sheen * w.z + T(sheen_albedo_terms[i]);
     return T(1) - sheen * albedo_of_sheen;
   }
   T left_by_coat(const Vec3<T>& w) const {
