@@ -128,9 +128,18 @@ void RenderReport::print_summary(const std::vector<std::filesystem::path>& outpu
   if (as_asked)
     fmt::print(stderr, "Render complete\n");
   else if (s.stopped == Stopped::done)
-    fmt::print(stderr, "Render stopped short of its target by --spp; what was rendered is saved\n");
+    fmt::print(stderr, "Render stopped short of its target{}; what was rendered is saved\n",
+               limited_by_spp() ? " by --spp" : "");
   else
     fmt::print(stderr, "Render stopped early: {}; what was rendered is saved\n", name_of(s.stopped));
+}
+
+bool RenderReport::limited_by_spp() const {
+  const Window& w = result.film.window();
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x)
+      if (result.film.count(x, y) >= options.spp) return true;
+  return false;
 }
 
 void RenderReport::print_expected_error() const {
@@ -141,7 +150,9 @@ void RenderReport::print_expected_error() const {
     fmt::print(stderr, "the target was {:.2g}\n", target);
   else
     fmt::print(stderr, "the target of {:.2g} was not reached{}\n", target,
-               stopped == Stopped::done ? "; raise --spp" : "");
+               stopped != Stopped::done ? ""
+               : limited_by_spp()       ? "; raise --spp"
+                                        : ": bright samples are rarer than the pilot saw; ask for less");
 }
 
 std::string RenderReport::json() const {

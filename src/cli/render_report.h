@@ -33,6 +33,8 @@ struct RenderReport {
  private:
   void print_warnings(bool verbose) const;
   void print_expected_error() const;
+  /// Whether some pixel has all the samples that --spp allows.
+  bool limited_by_spp() const;
   /// The flags that, besides those `known`, render the same film of the same scene file.
   std::string repeating_flags(const std::string& known, const Film& film) const;
   /// The command that renders one sample again, alone.

@@ -10,30 +10,78 @@ namespace {
 /// A block's noise is taken to be at least this part of the image's: a short pilot may have missed rare
 /// paths. So each block gets at least an eighth of the samples that the image's mean noise asks for.
 constexpr double least_noise = 1.0 / 64;
+/// Of an image of two halves that tells its own error.
+constexpr std::uint64_t fewest_samples = 4;
+/// What the fall of the noise is found from: films of at least so many times the samples. So much of it may
+/// be chance.
+constexpr double least_growth = 3, chance_of_fall = 0.1;
 
-/// relMSE of one sample of a pixel, from means `a` of n and `b` of m samples.
-double pixel_noise(const Vec3d& a, double n, const Vec3d& b, double m) {
-  double sum = 0;
-  for (int c = 0; c < 3; ++c) {
-    const double difference = a[c] - b[c];            // of variance (1/n + 1/m) times a sample's
-    const double square = std::max(a[c] * b[c], 0.);  // of the radiance, free of noise on average
-    sum += difference * difference / (square + 0.01);
+/// f(a, b) of every pixel's means in channel c.
+template <class F>
+Plane plane_of(const Film& a, const Film& b, int c, F f) {
+  const Window& w = a.window();
+  Plane plane(w.width(), w.height());
+  for (int y = w.y0; y < w.y1; ++y)
+    for (int x = w.x0; x < w.x1; ++x)
+      plane.at(x - w.x0, y - w.y0) = static_cast<float>(f(a.mean(x, y)[c], b.mean(x, y)[c]));
+  return plane;
+}
+
+/// The means of squares of 2 radius + 1 pixels.
+Plane means_around(const Plane& plane, int radius) {
+  const Taps taps = normalised(make_taps(radius, [](int) { return 1.; }));
+  return convolve(plane, taps, taps, Border::cut);
+}
+
+/// The squared radiance that a channel's error is held to, from products a b, whose noise is 0 on average.
+/// Where noise exceeds the signal, a pixel's own product may be near 0: it is drawn to the mean around it
+/// (Efron and Morris 1973). An outlier raises its own product, but the mean of 25 less: it is at most that.
+Plane squared_radiance(const Film& a, const Film& b, int c) {
+  const Plane own = plane_of(a, b, c, [](double p, double q) { return std::max(p * q, 0.); });
+  const Plane noise =
+      means_around(plane_of(a, b, c, [](double p, double q) { return (p - q) * (p - q) / 2; }), 1);
+  const Plane near = means_around(own, 1);
+  Plane squares = means_around(own, 2);
+  for (std::size_t i = 0; i < own.values.size(); ++i) {
+    const float s = near.values[i], v = noise.values[i];
+    if (s + v > 0) squares.values[i] = std::min(squares.values[i], s * (v + own.values[i]) / (s + v));
   }
-  return sum / 3 / (1 / n + 1 / m);
+  return squares;
 }
 
 double area(const Window& w) { return static_cast<double>(w.width()) * w.height(); }
 
 }  // namespace
 
-BlockNoise::BlockNoise(const Film& a, const Film& b, const SampleMap& blocks) : blocks_(blocks) {
+PixelNoise::PixelNoise(const Film& a, const Film& b) : window_(a.window()), plane_(a.width(), a.height()) {
+  for (int c = 0; c < 3; ++c) {
+    const Plane squares = squared_radiance(a, b, c);
+    for (int y = window_.y0; y < window_.y1; ++y)
+      for (int x = window_.x0; x < window_.x1; ++x) {
+        const double n = a.count(x, y), m = b.count(x, y);
+        if (n == 0 || m == 0) continue;
+        const double difference = a.mean(x, y)[c] - b.mean(x, y)[c];  // variance: (1/n + 1/m) of a sample's
+        const double square = squares.at(x - window_.x0, y - window_.y0);
+        plane_.at(x - window_.x0, y - window_.y0) +=
+            static_cast<float>(difference * difference / (square + 0.01) / 3 / (1 / n + 1 / m));
+      }
+  }
+}
+
+double PixelNoise::expected_error(const Film& film) const {
+  double sum = 0;
+  for (int y = window_.y0; y < window_.y1; ++y)
+    for (int x = window_.x0; x < window_.x1; ++x)
+      sum += film.count(x, y) > 0 ? at(x, y) / film.count(x, y) : 1;  // black: the error is r^2
+  return sum / area(window_);
+}
+
+BlockNoise::BlockNoise(const PixelNoise& pixels, const SampleMap& blocks) : blocks_(blocks) {
   for (std::size_t i = 0; i < blocks.blocks(); ++i) {
     const Window w = blocks.block(i);
     double sum = 0;
     for (int y = w.y0; y < w.y1; ++y)
-      for (int x = w.x0; x < w.x1; ++x)
-        if (a.count(x, y) > 0 && b.count(x, y) > 0)
-          sum += pixel_noise(a.mean(x, y), a.count(x, y), b.mean(x, y), b.count(x, y));
+      for (int x = w.x0; x < w.x1; ++x) sum += pixels.at(x, y);
     noise_.push_back(sum / area(w));
   }
   raise_the_least();
@@ -54,27 +102,28 @@ void BlockNoise::raise_the_least() {
   for (double& noise : noise_) noise = std::max(noise, least);
 }
 
-double BlockNoise::expected_error(const SampleMap& map) const {
-  return mean([&](std::size_t i) { return noise_[i] / static_cast<double>(map.count(i)); });
+double BlockNoise::fall_from(const BlockNoise& shorter) const {
+  const double growth = static_cast<double>(blocks_.total()) / static_cast<double>(shorter.blocks_.total());
+  if (growth < least_growth) return 0;
+  const double before = shorter.mean([&](std::size_t i) { return shorter.noise_[i]; });
+  const double after = mean([&](std::size_t i) { return noise_[i]; });
+  return std::clamp(std::log(before / after) / std::log(growth) - chance_of_fall, 0., 0.5);
 }
 
-double BlockNoise::expected_error(const Film& film) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < noise_.size(); ++i) {
-    const Window w = blocks_.block(i);
-    for (int y = w.y0; y < w.y1; ++y)
-      for (int x = w.x0; x < w.x1; ++x)
-        sum += film.count(x, y) > 0 ? noise_[i] / film.count(x, y) : 1;  // black: the error is r^2
-  }
-  return sum / area(film.window());
+double BlockNoise::expected_error(const SampleMap& map) const {
+  return mean([&](std::size_t i) {
+    const double samples = static_cast<double>(map.count(i));
+    return noise_[i] / samples * std::pow(2 * static_cast<double>(blocks_.count(i)) / samples, fall_);
+  });
 }
 
 SampleMap BlockNoise::planned(double samples_per_noise, std::uint64_t most) const {
   std::vector<std::uint64_t> counts;
   for (const double noise : noise_) {
     const double count = std::ceil(samples_per_noise * std::sqrt(noise));
-    counts.push_back(count < static_cast<double>(most) ? std::max<std::uint64_t>(1, std::uint64_t(count))
-                                                       : most);
+    counts.push_back(count < static_cast<double>(most)
+                         ? std::max(std::min(fewest_samples, most), static_cast<std::uint64_t>(count))
+                         : most);
   }
   SampleMap map = blocks_;
   map.set_first(0);

@@ -3,27 +3,46 @@
 #include <vector>
 
 #include "castray/film.h"
+#include "image/convolve.h"
 #include "plan/sample_map.h"
 
 namespace castray {
 
-/// The variance of each block of an image, as relMSE.
-class BlockNoise {
+/// The variance of one sample of each pixel, as relMSE.
+class PixelNoise {
  public:
   /// From two independent films a and b of the image: per pixel and channel, (a-b)^2 estimates the variance.
-  /// Normalised by a b, not a^2, so that an outlier does not shrink its own error. The films must be
-  /// independent of each other; samples within one may be correlated, as points of a sequence and pixels that
-  /// share paths are.
-  ///
-  /// The error of n samples is taken to be that of one over n. For a sequence this overestimates it.
-  BlockNoise(const Film& a, const Film& b, const SampleMap& blocks);
+  /// The films must be independent of each other; samples within one may be correlated, as points of a
+  /// sequence and pixels that share paths are. A pixel that one of them lacks has no noise.
+  PixelNoise(const Film& a, const Film& b);
 
-  /// The expected relMSE of an image with the samples of the map, or with those that the film has.
-  double expected_error(const SampleMap& map) const;
+  /// Of pixel (x,y) of the full image.
+  double at(int x, int y) const { return plane_.at(x - window_.x0, y - window_.y0); }
+  /// The expected relMSE of a film of the same window, the error of n samples that of one over n.
   double expected_error(const Film& film) const;
 
-  /// The fewest samples per pixel, at most `most`, with an expected relMSE of `target`: in proportion to the
-  /// square root of a block's noise (Neyman 1934). `most` everywhere if that is not enough.
+ private:
+  Window window_;
+  Plane plane_;
+};
+
+/// The variance of one sample in each block of an image, as relMSE.
+class BlockNoise {
+ public:
+  /// `blocks`: the samples of each of the films that told the noise.
+  BlockNoise(const PixelNoise& pixels, const SampleMap& blocks);
+
+  /// As a sequence's error falls faster than 1/n, so does the noise of one of n samples, as n^-fall: the fall
+  /// from a film of fewer samples to this one's, less what may be chance; 0 to 1/2, and 0 between films of
+  /// about as many samples.
+  double fall_from(const BlockNoise& shorter) const;
+  void set_fall(double fall) { fall_ = fall; }
+
+  /// The expected relMSE of an image with the samples of the map, in two halves with sequences of their own.
+  double expected_error(const SampleMap& map) const;
+
+  /// The fewest samples per pixel, at least 4, at most `most`, with an expected relMSE of `target`: in
+  /// proportion to the square root of a block's noise (Neyman 1934). `most` everywhere if that is not enough.
   SampleMap plan(double target, std::uint64_t most) const;
 
  private:
@@ -34,7 +53,8 @@ class BlockNoise {
   SampleMap planned(double samples_per_noise, std::uint64_t most) const;
 
   SampleMap blocks_;
-  std::vector<double> noise_;  ///< by block: relMSE of one sample a pixel
+  std::vector<double> noise_;  ///< by block: relMSE of one sample a pixel, among as many as the film has
+  double fall_ = 0;
 };
 
 }  // namespace castray

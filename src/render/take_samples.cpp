@@ -1,6 +1,8 @@
 #include "render/take_samples.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "render/block_noise.h"
 
@@ -15,6 +17,8 @@ constexpr std::uint64_t share_aimed_at = 8, share_needed = 16;
 /// The next pilot has at most this many times the samples of a block: a short pilot's estimate is unreliable.
 constexpr std::uint64_t fastest_growth = 8;
 constexpr std::uint64_t last_round = 15;
+/// The image's error may exceed the target by this factor: it is measured, and has noise of its own.
+constexpr double near_enough = 1.4;
 /// Pilots use the last replicates of 32-bit sample indices, which no image reaches.
 constexpr std::uint64_t last_replicate = (std::uint64_t{1} << 32) / replicate_length - 1;
 constexpr std::uint64_t most_of_image = (last_replicate - 2 * last_round - 1) * replicate_length;
@@ -27,15 +31,19 @@ class TargetRun {
   RenderResult run() {
     SampleMap pilot(job_.window, {0, first_pilot});
     planned_ = 2 * share_aimed_at * pilot.total();
+    std::optional<BlockNoise> shorter;
     for (std::uint64_t round = 0;; ++round) {
       for (std::uint64_t side = 0; side < 2; ++side) {
         pilot.set_first((last_replicate - 2 * round - side) * replicate_length);
         if (!render_pilot(pilot, side)) return pilots_as_image();
       }
-      const BlockNoise noise(pilots_[0], pilots_[1], pilot);
+      const PixelNoise pixels(pilots_[0], pilots_[1]);
+      BlockNoise noise(pixels, pilot);
+      if (shorter) noise.set_fall(noise.fall_from(*shorter));
       const SampleMap plan = noise.plan(target_, std::min(job_.options.spp, most_of_image));
       planned_ = stats_.paths + plan.total();
-      if (stats_.paths * share_needed >= plan.total() || round == last_round) return image(noise, plan);
+      if (stats_.paths * share_needed >= plan.total() || round == last_round) return image(pixels, plan);
+      shorter = noise;
       pilot = longer_pilot(pilot, plan);
       planned_ += 2 * pilot.total();
     }
@@ -64,11 +72,7 @@ class TargetRun {
   /// Whether it came to its end.
   bool render_pilot(const SampleMap& pilot, std::uint64_t side) {
     RenderResult result = render(pilot);
-    Film& film = pilots_[side];
-    if (film.samples.empty())
-      film = std::move(result.film);
-    else
-      film.merge(result.film);
+    pilots_[side] = std::move(result.film);
     stats_.pilot_paths = stats_.paths;
     return stats_.stopped == Stopped::done;
   }
@@ -90,13 +94,35 @@ class TargetRun {
     return {std::move(film), std::move(stats_)};
   }
 
-  RenderResult image(const BlockNoise& noise, const SampleMap& plan) {
-    RenderResult result = render(plan);
+  /// The image is two films, independent of each other, so that it knows its own error. Only the pilot
+  /// decides about samples: an image that is kept or not by the noise seen in it is biased.
+  RenderResult image(const PixelNoise& of_pilot, const SampleMap& plan) {
+    const auto [first, second] = halves(plan);
+    RenderResult result = render(first);
+    std::optional<PixelNoise> measured;
+    if (result.stats.stopped == Stopped::done && second.total() > 0) {
+      RenderResult rest = render(second);
+      if (rest.stats.stopped == Stopped::done) measured.emplace(result.film, rest.film);
+      result.film.merge(rest.film);
+      result.stats = std::move(rest.stats);
+    }
+    result.stats.expected_error = (measured ? *measured : of_pilot).expected_error(result.film);
     result.film.nonfinite_samples += pilots_[0].nonfinite_samples + pilots_[1].nonfinite_samples;
-    result.stats.expected_error = noise.expected_error(result.film);
-    const bool reached = noise.expected_error(plan) <= target_;
+    const bool reached = *result.stats.expected_error <= near_enough * target_;
     if (result.stats.stopped == Stopped::done && reached) result.stats.stopped = Stopped::target_error;
     return result;
+  }
+
+  /// Half of each block's samples, and the rest in the replicate after it.
+  static std::array<SampleMap, 2> halves(const SampleMap& plan) {
+    std::array<SampleMap, 2> maps{plan, plan};
+    for (std::size_t half = 0; half < 2; ++half) {
+      std::vector<std::uint64_t> counts;
+      for (std::size_t i = 0; i < plan.blocks(); ++i) counts.push_back((plan.count(i) + 1 - half) / 2);
+      maps[half].set_counts(std::move(counts));
+      maps[half].set_first(half * replicate_length);
+    }
+    return maps;
   }
 
   const Job& job_;

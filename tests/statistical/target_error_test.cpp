@@ -31,29 +31,30 @@ std::vector<std::vector<double>> renders_of(const Scene& scene, RenderOptions op
 
 }  // namespace
 
-TEST_CASE("the error that a target asks for is about the error that is got", "[statistical]") {
+// The error told is an estimate of two half films, and of those pixels only that differ much.
+TEST_CASE("the error that a target asks for is about the error that is got, and the error told is",
+          "[statistical]") {
   struct Case {
     const char* scene;
     bool shared;
-    double target, least;  ///< of the error got
+    double target;
   };
-  for (const Case& c :
-       {Case{"cornell_box", true, 1e-3, 1e-3 / 4}, Case{"cornell_box", false, 1e-2, 1e-2 / 4},
-        Case{"cornell_conductor", true, 2e-3, 2e-3 / 4}, Case{"cornell_conductor", false, 3e-2, 3e-2 / 4},
-        Case{"cornell_lights", true, 5e-3, 5e-3 / 6}}) {  // edges of emitters fall as N^-1.5
+  for (const Case& c : {Case{"cornell_box", true, 1e-3}, Case{"cornell_box", false, 1e-2},
+                        Case{"cornell_conductor", true, 2e-3}, Case{"cornell_conductor", false, 3e-2},
+                        Case{"cornell_lights", true, 5e-3}}) {
     const Scene scene = standard_scene(c.scene);
     const ReferencePair reference(c.scene);
-    Mean got;
-    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    Mean got, told;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
       const RenderOptions options = to_target(wavefront_options(128, 1, seed), c.target);
       const RenderResult result = render(scene, c.shared ? options : plain(options));
-      REQUIRE(result.stats.stopped == Stopped::target_error);
-      REQUIRE(result.stats.expected_error.value() <= c.target);
+      told.add(result.stats.expected_error.value());
       got.add(reference.relmse(result.film.image()));
     }
-    CAPTURE(c.scene, c.shared, c.target, got.mean(), got.error());
-    CHECK(got.mean() > c.least);
+    CAPTURE(c.scene, c.shared, c.target, got.mean(), told.mean());
+    CHECK(got.mean() > c.target * 0.5);
     CHECK(got.mean() < c.target * 1.5);
+    CHECK(got.mean() == Approx(told.mean()).epsilon(0.2));
   }
 }
 

@@ -1,10 +1,13 @@
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <set>
 
 #include "castray/error.h"
+#include "core/sequences.h"
 #include "render/block_noise.h"
 #include "render/prepared_scene.h"
+#include "render/take_samples.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -22,10 +25,10 @@ RenderOptions to_target(double target, std::uint64_t most = 4096) {
   return options;
 }
 
-RenderOptions without_target(RenderOptions options, std::uint64_t spp) {
+RenderOptions samples_of(RenderOptions options, const SampleRange& samples) {
   options.target_error.reset();
   options.reconstruct = Switch::off;
-  options.spp = spp;
+  options.samples = samples;
   return options;
 }
 
@@ -43,8 +46,8 @@ struct TwoFilms {
             films[side].add(x, y, {1 + (side ? 1.f : -1.f) * (x < 32 ? left : right), 0, 0});
     }
   }
-  BlockNoise noise() const { return {films[0], films[1], map()}; }
-  SampleMap map() const { return {films[0].window(), {0, 1}}; }
+  BlockNoise noise() const { return {PixelNoise(films[0], films[1]), map()}; }
+  SampleMap map() const { return {films[0].window(), {0, 4}}; }
 };
 
 }  // namespace
@@ -73,9 +76,39 @@ TEST_CASE("noise is what two films differ by, held to their radiance") {
   const double noise = 0.08 / 3 / (1.1 * 0.9 + 0.01);
   const double least = noise / 2 / 64;
   SampleMap map = two.map();
+  map.set_counts({1, 1});
   CHECK(two.noise().expected_error(map) == Approx((noise + least) / 2).epsilon(1e-6));
   map.set_counts({16, 4});
   CHECK(two.noise().expected_error(map) == Approx((noise / 16 + least / 4) / 2).epsilon(1e-6));
+  CHECK(PixelNoise(two.films[0], two.films[1]).at(3, 5) == Approx(noise));
+}
+
+TEST_CASE("an outlier does not shrink its own error") {
+  TwoFilms two(0.1f, 0.1f);
+  two.films[0].add(10, 10, {400, 0, 0});
+  const double a = (4 * 0.9 + 400) / 5, b = 1.1;
+  const double variance = (a - b) * (a - b) / (1. / 5 + 1. / 4);
+  const double held_to_own_product = variance / 3 / (a * b + 0.01), held_to_truth = variance / 3 / 1.01;
+  const double noise = PixelNoise(two.films[0], two.films[1]).at(10, 10);
+  CHECK(noise > 15 * held_to_own_product);
+  CHECK(noise < held_to_truth);
+}
+
+TEST_CASE("noise that fell as samples grew is expected to fall further") {
+  const TwoFilms noisy(0.2f, 0.2f), calmer(0.1f, 0.1f);
+  SampleMap few = noisy.map(), more = noisy.map();
+  few.set_counts({1, 1});
+  more.set_counts({64, 64});
+  const BlockNoise before(PixelNoise(noisy.films[0], noisy.films[1]), few);
+  BlockNoise after(PixelNoise(calmer.films[0], calmer.films[1]), more);
+  const double fall = after.fall_from(before);  // to a quarter over 64 times the samples, less 0.1 for chance
+  CHECK(fall == Approx(1. / 3 - 0.1).epsilon(0.1));
+  CHECK(before.fall_from(after) == 0);
+  SampleMap map = more;
+  map.set_counts({1024, 1024});
+  const double without = after.expected_error(map);
+  after.set_fall(fall);
+  CHECK(after.expected_error(map) == Approx(without * std::pow(8, -fall)));  // halves of 512
 }
 
 TEST_CASE("samples are planned in proportion to the root of the noise, until the target is met") {
@@ -88,11 +121,12 @@ TEST_CASE("samples are planned in proportion to the root of the noise, until the
   CHECK(capped.count(0) == 100);
   CHECK(capped.count(1) == 100);
   const BlockNoise calm = TwoFilms(0, 0).noise();
-  CHECK(calm.plan(1e-9, 100).total() == 64 * 32);  // one each
+  CHECK(calm.plan(1e-9, 100).total() == 64 * 32 * 4);  // the fewest
+  CHECK(calm.plan(1e-9, 2).total() == 64 * 32 * 2);
   CHECK(calm.expected_error(capped) == 0);
 }
 
-TEST_CASE("each block of a render to a target error is that of a plain render") {
+TEST_CASE("each block of a render to a target error is that of two plain renders, merged") {
   const Scene scene = standard_scene("cornell_conductor");
   for (const Integrator integrator : {Integrator::wavefront, Integrator::reference}) {
     RenderOptions options = to_target(integrator == Integrator::wavefront ? 2e-3 : 0.2);
@@ -113,7 +147,8 @@ TEST_CASE("each block of a render to a target error is that of a plain render") 
       }
     CHECK(paths == adaptive.stats.paths);
     for (const std::uint32_t n : counts) {
-      const Film whole = render(scene, without_target(options, n)).film;
+      Film whole = render(scene, samples_of(options, {0, n - n / 2})).film;
+      whole.merge(render(scene, samples_of(options, {replicate_length, n / 2})).film);
       for (int y = 0; y < 70; ++y)
         for (int x = 0; x < 100; ++x)
           if (adaptive.film.count(x, y) == n) REQUIRE(adaptive.film.mean(x, y) == whole.mean(x, y));
@@ -140,6 +175,31 @@ TEST_CASE("a target that the most samples cannot reach is told") {
   CHECK(result.stats.stopped == Stopped::done);
   CHECK(result.stats.expected_error.value() > 1e-7);
   CHECK(result.film.count(50, 50) == 20);
+}
+
+TEST_CASE("bright samples that only the image saw make the target missed") {
+  for (const bool rare : {false, true}) {
+    // the image's samples are those of replicates 0 and 1
+    const auto radiance = [&](int x, int y, std::uint64_t sample) {
+      const std::uint32_t h =
+          hash_combine(hash_combine(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)),
+                       static_cast<std::uint32_t>(sample));
+      const bool bright = rare && sample < 2 * replicate_length && h % 5000 == 0;
+      return bright ? 200.f : 1 + .5f * static_cast<float>(static_cast<std::int32_t>(h)) / 2147483648.f;
+    };
+    const BandWork work{
+        .render = [&](int y0, int y1, const SampleRange& range, const SampleMap& map, Film& film, RowStats&) {
+          for (int y = y0; y < y1; ++y)
+            for (int x = 0; x < film.width(); ++x)
+              for (std::uint64_t s = range.first; s < range.first + range.count; ++s)
+                if (map.wants(x, y, s)) film.add(x, y, Vec3f(radiance(x, y, s)));
+        }};
+    const Job job = make_job(facts_of(standard_scene("cornell_box")), to_target(2e-3));
+    const RenderStats stats = take_samples(job, {}, nullptr, work).stats;
+    CAPTURE(rare, stats.expected_error.value());
+    CHECK((stats.stopped == Stopped::done) == rare);
+    CHECK((*stats.expected_error > 2.8e-3) == rare);
+  }
 }
 
 TEST_CASE("a render to a target error that is stopped early leaves a whole image") {
