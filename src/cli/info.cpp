@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -23,29 +24,49 @@ namespace {
 
 std::string text_of(const Vec3d& v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
 
+std::string text_of(const std::array<float, 2>& v) { return fmt::format("({:g}, {:g})", v[0], v[1]); }
+
+/// What the parameter of `key` reads of an image: "oak.png (16 x 16, srgb, uv times (2, 3))".
+std::string describe(const TextureMap& map, const MaterialKey& key, const Scene& scene) {
+  const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
+  std::string text = fmt::format("{} ({} x {}", printable(texture.name), texture.width, texture.height);
+  if (!texture.bytes.empty()) text += texture.color_space == ColorSpace::srgb ? ", srgb" : ", linear";
+  if (map.channel != Channel::color)
+    text += fmt::format(", {}", channel_names()[static_cast<std::size_t>(map.channel)]);
+  if (map.scale != TextureMap().scale) text += ", uv times " + text_of(map.scale);
+  if (map.offset != TextureMap().offset) text += ", uv plus " + text_of(map.offset);
+  if (map.clamp) text += ", clamped";
+  const bool bends = key.kind == MaterialKey::Kind::image_only;
+  if (bends && map.gain != 1) text += fmt::format(", gain {:g}", map.gain);
+  if (!bends && (map.base != 0 || map.gain != 1))
+    text += fmt::format(", as {:g} + {:g} texel", map.base, map.gain);
+  return text + ")";
+}
+
 /// "kd (1, 1, 1)"; empty where there is nothing to tell.
 std::string describe(const MaterialKey& key, const Material& material, const Scene& scene) {
   using Kind = MaterialKey::Kind;
+  const bool mapped = key.parameter && material.map(*key.parameter).used();
+  if (key.kind == Kind::squared && !mapped) return "";  // alpha is told
   const Vec3d value = value_of(key, material);
-  const bool changed = key.kind != Kind::squared && value != value_of(key, Material{.name = {}});
-  std::string text;
-  if (key.brief || changed) {
-    text = key.name;
-    if (key.kind == Kind::color) text += " " + text_of(value);
-    if (key.kind == Kind::number) text += fmt::format(" {:g}", value.x);
-  }
-  if (!key.parameter || !material.map(*key.parameter).used()) return text;
-  const TextureMap& map = material.map(*key.parameter);
-  const Texture& texture = scene.textures[static_cast<std::size_t>(map.texture)];
-  return fmt::format("{} times {} ({} x {})", text.empty() ? std::string(key.name) : text,
-                     printable(texture.name), texture.width, texture.height);
+  if (!key.brief && !mapped && value == value_of(key, Material{.name = {}})) return "";
+  std::string text(key.name);
+  if (key.kind == Kind::color) text += " " + text_of(value);
+  if (key.kind == Kind::number) text += fmt::format(" {:g}", value.x);
+  if (key.kind == Kind::squared) text += fmt::format(" {:g}", std::sqrt(value.x));
+  if (!mapped) return text;
+  return text + (key.kind == Kind::image_only ? " " : " times ") +
+         describe(material.map(*key.parameter), key, scene);
 }
 
 std::string describe(const Material& material, const Scene& scene) {
   const MaterialDescriptor& descriptor = descriptor_of(material.type);
   std::string text(descriptor.name);
-  for (const MaterialKey& key : descriptor.keys)
+  const bool alpha_is_told = material.map(SurfaceParameter::roughness).used();
+  for (const MaterialKey& key : descriptor.keys) {
+    if (alpha_is_told && key.parameter == SurfaceParameter::alpha) continue;
     if (const std::string part = describe(key, material, scene); !part.empty()) text += ", " + part;
+  }
   return text;
 }
 

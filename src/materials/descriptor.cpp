@@ -109,6 +109,11 @@ std::uint32_t traits_of(const Material& material) {
   return traits;
 }
 
+const std::vector<std::string_view>& channel_names() {
+  static const std::vector<std::string_view> names{"color", "red", "green", "blue", "alpha", "luminance"};
+  return names;
+}
+
 int floats_of(const MaterialKey& key) { return key.kind == MaterialKey::Kind::color ? 3 : 1; }
 
 Vec3d value_of(const MaterialKey& key, const Material& material) {

@@ -69,6 +69,9 @@ bool uses_vertex_colors(const Material& material);
 /// Whether the albedo of a material's lobe is looked up by the alpha of an image (LobeAlbedoRows).
 bool has_lobe_rows(const Material& material);
 
+/// Of Channel, as scene files name them.
+const std::vector<std::string_view>& channel_names();
+
 /// Of its value.
 int floats_of(const MaterialKey& key);
 

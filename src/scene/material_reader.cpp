@@ -84,8 +84,7 @@ class MaterialReader {
     if (const JsonNode* gain = reader.find("gain"))
       map.gain = static_cast<float>(read_number(*gain, "\"gain\""));
     if (const JsonNode* channel = reader.find("channel"))
-      map.channel = static_cast<Channel>(
-          choose(*channel, "channel", {"color", "red", "green", "blue", "alpha", "luminance"}));
+      map.channel = static_cast<Channel>(choose(*channel, "channel", channel_names()));
     ColorSpace space = key.kind == Kind::color ? ColorSpace::srgb : ColorSpace::linear;
     if (const JsonNode* named = reader.find("color_space"))
       space = choose(*named, "colour space", {"srgb", "linear"}) == 0 ? ColorSpace::srgb : ColorSpace::linear;

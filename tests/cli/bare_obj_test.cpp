@@ -77,6 +77,18 @@ TEST_CASE("a mesh without lights is lit by a white sky, or by the environment of
   CHECK(brightest(mesh.image()) == 0);
 }
 
+TEST_CASE("info tells what of which image each parameter reads, and how") {
+  const Mesh mesh("mtllib m.mtl\nusemtl a\n" + square + "vt 0 0\nf 1/1 2/1 3/1\n",
+                  "newmtl a\nKd .9 .8 .7\nmap_Kd -s 2 3 -o .5 0 -clamp on g.ppm\nPr .5\n"
+                  "map_Pr -mm .1 .5 -imfchan g g.ppm\nKs .2 .2 .2\nbump -bm .25 g.ppm\nd .5\n");
+  std::ofstream(mesh.folder / "g.ppm") << "P3 1 1 255 128 128 128\n";
+  const std::string info = run_castray({"info", "o.obj"}, mesh.folder.path()).out;
+  CHECK(told(info, "  a: ") ==
+        "microfacet, kd (0.9, 0.8, 0.7) times g.ppm (1 x 1, uv times (2, 3), uv plus (0.5, 0), clamped), ks "
+        "(0.2, 0.2, 0.2), roughness 0.5 times g.ppm (1 x 1, green, as 0.1 + 0.5 texel), coverage 0.5, "
+        "bump_map g.ppm (1 x 1, gain 0.25)");
+}
+
 TEST_CASE("a room without its front is looked into, from wherever the front was") {
   // Walls of a cube face inwards; the one that is left out is open.
   const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
