@@ -54,7 +54,7 @@ class FacetTracer : public Tracer {
       mesh.triangles.push_back({first, first + 1, first + 2});
     }
     mesh.triangle_material.assign(mesh_.count, builder.add_material({}));
-    builder.add(std::move(mesh));
+    builder.add(std::move(mesh), "mesh");
     scene_ = builder.finish();
     facets_ = make_facets(scene_);
     exact_.emplace(scene_, facets_.facets);

@@ -21,7 +21,8 @@ Scene load_obj(const std::filesystem::path& file, std::optional<std::string_view
   builder.scene.name = file.stem().string();
   ObjMaterials materials(builder);
   builder.add(make_mesh(text ? parse_obj(*text, file, builder.warnings) : read_obj(file, builder.warnings),
-                        {}, materials));
+                        {}, materials),
+              file);
   Scene scene = builder.finish();
   scene.camera = automatic_camera(scene);
   return scene;

@@ -122,7 +122,11 @@ void SceneBuilder::ignore(const std::filesystem::path& file, std::string_view ke
     scene.ignored_keys.push_back(text);
 }
 
-void SceneBuilder::add(Mesh&& mesh) {
+void SceneBuilder::add(Mesh&& mesh, const std::filesystem::path& file) {
+  if (mesh.triangles.empty()) {
+    warnings.add({file.string()}, "has no faces");
+    if (!without_faces_) without_faces_ = file;
+  }
   if (mesh_.triangles.empty()) {
     mesh_ = std::move(mesh);
     return;
@@ -152,6 +156,8 @@ void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
   keep_marked(mesh_.triangle_colors, keep);
   scene.dropped_triangles += before - mesh_.triangles.size();
   if (!mesh_.triangles.empty()) return;
+  if (scene.dropped_triangles == 0 && without_faces_)
+    throw InputError(SourcePlace{without_faces_->string()}, "no faces, so that the scene has no triangle");
   const std::string dropped = scene.dropped_triangles == 0
                                   ? ""
                                   : " left: all " + std::to_string(scene.dropped_triangles) +

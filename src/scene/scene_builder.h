@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -39,7 +40,8 @@ class SceneBuilder {
   /// Notes a key of a file that means nothing here.
   void ignore(const std::filesystem::path& file, std::string_view key);
 
-  void add(Mesh&& mesh);
+  /// Adds the mesh of a file, which may have no faces.
+  void add(Mesh&& mesh, const std::filesystem::path& file);
 
   /// Drops degenerate triangles and fills in geometry, center, unit, lights and warnings. Throws InputError
   /// where no triangle is left.
@@ -55,7 +57,8 @@ class SceneBuilder {
   void keep_triangles(const std::vector<bool>& keep);
 
   Mesh mesh_;
-  std::map<std::string, int> textures_;  ///< by what they are made of
+  std::optional<std::filesystem::path> without_faces_;  ///< the first such file
+  std::map<std::string, int> textures_;                 ///< by what they are made of
 };
 
 }  // namespace castray

@@ -235,8 +235,7 @@ class SceneFileReader {
     if (!obj.file) obj.file = read_obj(obj.path, builder_.warnings);
     Mesh mesh = make_mesh(obj.take(), options, materials_);
     if (reader.find("transform")) apply(transform, mesh);
-    if (mesh.triangles.empty()) builder_.warnings.add({obj.path.string()}, "has no faces");
-    builder_.add(std::move(mesh));
+    builder_.add(std::move(mesh), obj.path);
   }
 
   std::filesystem::path file_;

@@ -5,6 +5,7 @@
 FUZZ(text) {
   castray::SceneBuilder builder;
   castray::ObjMaterials materials(builder);
-  builder.add(make_mesh(castray::parse_obj(text, "nowhere/o.obj", builder.warnings), {}, materials));
+  const std::filesystem::path file = "nowhere/o.obj";
+  builder.add(make_mesh(castray::parse_obj(text, file, builder.warnings), {}, materials), file);
   builder.finish();
 }

@@ -184,7 +184,7 @@ const std::vector<Case> cases = {
             "s.json:4:37: unknown \"normals\" 'soft'; known: file, face, smooth"),
     {"an OBJ without triangles in a scene",
      {scene_with_mesh(R"({ "obj": "o.obj" })"), {"o.obj", three}},
-     "s.json: the scene has no triangle"},
+     "o.obj: no faces, so that the scene has no triangle"},
     // OBJ
     in_obj("index 0", three + "f 1 2 0\n",
            "o.obj:4:7: vertex index 0 is out of range: valid are 1 .. 3 and -3 .. -1"),
@@ -211,12 +211,12 @@ const std::vector<Case> cases = {
     in_obj("a vertex that is no number", "# x\n\nv 1 2 x3\n", "o.obj:3:7: 'x3' is not a number, in 'v'"),
     in_obj("a number with something behind", "v 1 2 3,5\n", "o.obj:1:7: '3,5' is not a number, in 'v'"),
     in_obj("a vertex out of double's range", "v 1 2 1e999\n", "o.obj:1:7: '1e999' is out of range, in 'v'"),
-    in_obj("nothing in it", "", "o.obj: the scene has no triangle"),
+    in_obj("nothing in it", "", "o.obj: no faces, so that the scene has no triangle"),
     in_obj("binary",
            std::string("\x7f"
                        "ELF\0\0\1\2\n\xff\xfe",
                        12),
-           "o.obj: the scene has no triangle"),
+           "o.obj: no faces, so that the scene has no triangle"),
     in_obj("all flat", three + "f 1 1 2\nf 1 2 2\n",
            "o.obj: the scene has no triangle left: all 2 are degenerate (no area, or coordinates that are "
            "not finite)"),
