@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include "core/text.h"
 #include "scene/names.h"
@@ -26,6 +27,9 @@ std::optional<double> parse_number(std::string_view word, bool* out_of_range) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.begin(), word.end(), value);
   if (out_of_range) *out_of_range = error == std::errc::result_out_of_range;
+  // "1.#INF", "-1.#IND00": what is not finite, as older libraries of Microsoft print it
+  if (end != word.begin() && end != word.end() && end[-1] == '.' && *end == '#')
+    return std::numeric_limits<double>::quiet_NaN();
   if (error != std::errc() || end != word.end()) return std::nullopt;
   return value;
 }
@@ -61,7 +65,7 @@ void LineReader::join_continued_lines() {
   while (line_.ends_with('\\') && !text_.empty()) {
     joined_ += line_.substr(0, line_.size() - 1);
     joined_ += ' ';
-    line_ = take_line();
+    line_ = trimmed(take_line());
     ++lines_used_;
   }
   joined_ += line_;
@@ -76,8 +80,8 @@ bool LineReader::next_line() {
     if (line_number_ == 0) line_number_ = 1;
     lines_used_ = 1;
     line_begin_ = line_.data();
-    if (line_.ends_with('\\') && !trimmed(line_).starts_with('#')) join_continued_lines();
     line_ = trimmed(line_);
+    if (line_.ends_with('\\') && !line_.starts_with('#')) join_continued_lines();
     word_begin_ = line_.data();
     if (!line_.empty() && line_.front() != '#') return true;
   }

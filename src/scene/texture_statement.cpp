@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "scene/names.h"
+
 namespace castray {
 
 namespace {
@@ -40,15 +42,10 @@ bool take(TextureStatement& statement, std::string_view option, std::string_view
   return true;
 }
 
-}  // namespace
-
-TextureStatement read_texture_statement(const std::string& key, LineReader& line) {
-  TextureStatement statement;
-  statement.key = key;
-  statement.place = line.place();
+void read_options(LineReader& line, TextureStatement& statement) {
   for (;;) {
     const auto option = std::ranges::find(options, line.peek(), &Option::name);
-    if (option == std::end(options)) break;
+    if (option == std::end(options)) return;
     line.word();
     const std::string_view word = option->words > 0 ? line.word() : std::string_view();
     std::array<double, 3> numbers{};
@@ -62,7 +59,41 @@ TextureStatement read_texture_statement(const std::string& key, LineReader& line
     if (!take(statement, option->name, word, numbers, count))
       statement.ignored_options.emplace_back(option->name);
   }
-  statement.file = line.rest();
+}
+
+/// Where in `name` the first word that is an option begins; its end where none is.
+std::size_t first_option(std::string_view name) {
+  for (std::size_t at = name.find('-'); at < name.size(); at = name.find('-', at + 1)) {
+    const std::string_view word = name.substr(at, name.find_first_of(" \t", at) - at);
+    if (at > 0 && is_space(name[at - 1]) &&
+        std::ranges::find(options, word, &Option::name) != std::end(options))
+      return at;
+  }
+  return name.size();
+}
+
+/// Takes the options off that some programs write behind the name.
+void read_options_behind(std::string_view& name, TextureStatement& statement) {
+  const std::size_t end = first_option(name);
+  LineReader behind(name.substr(end), statement.place.file);
+  TextureStatement with = statement;
+  if (!behind.next_line()) return;
+  read_options(behind, with);
+  if (!behind.at_end()) return;  // a name with a word like an option
+  statement = with;
+  name = trimmed(name.substr(0, end));
+}
+
+}  // namespace
+
+TextureStatement read_texture_statement(const std::string& key, LineReader& line) {
+  TextureStatement statement;
+  statement.key = key;
+  statement.place = line.place();
+  read_options(line, statement);
+  std::string_view name = line.rest();
+  read_options_behind(name, statement);
+  statement.file = name;
   return statement;
 }
 

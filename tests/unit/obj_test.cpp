@@ -55,7 +55,9 @@ const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 TEST_CASE("OBJ files come as they are written") {
   for (const std::string& text :
        {three + "f 1 2 3", "\xef\xbb\xbf" + three + "f 1 2 3\n", three + "f -3 -2 -1\n",
-        three + "f 1 2 \\\n3\n", "  " + three + "\tf  1\t2 3 # a face\n", three + "vx what\nf 1// 2 3/\n"}) {
+        three + "f 1 2 \\\n3\n", three + "f 1 \\ \n2 \\\t\n 3\n",
+        three + "v 1.#IND -1.#QNAN0 1.#INF00\nf 1 2 3\n", "  " + three + "\tf  1\t2 3 # a face\n",
+        three + "vx what\nf 1// 2 3/\n"}) {
     INFO(text);
     const Scene scene = load_text(text);
     REQUIRE(scene.triangles.size() == 1);
@@ -239,6 +241,26 @@ TEST_CASE("map_Kd is read, with options and spaces in its name") {
   const TextureMap& map = scene.material_of(0).map(SurfaceParameter::kd);
   CHECK(map.scale == std::array<float, 2>{2, 1});
   CHECK(map.offset == std::array<float, 2>{0.5f, 0.25f});
+}
+
+TEST_CASE("options of a texture may stand in any order, in front of the name or behind it") {
+  const auto map_of = [](const std::string& statement, const std::string& file) {
+    const Input input("mtllib o.mtl\nvt 0 0\n" + three + "usemtl a\nf 1/1 2/1 3/1\n");
+    input.write("o.mtl", "newmtl a\n" + statement + "\n");
+    write_image(input.folder / file, Image(1, 1));
+    const Scene scene = input.load();
+    CHECK(scene.warnings.empty());
+    return scene.material_of(0).map(SurfaceParameter::kd);
+  };
+  for (const std::string options : {"-s 2 3 1 -clamp on -o .5", "-o .5 -clamp on -cc off -s 2 3"})
+    for (const std::string& statement : {"map_Kd " + options + " a b.pfm", "map_Kd a b.pfm " + options}) {
+      INFO(statement);
+      const TextureMap map = map_of(statement, "a b.pfm");
+      CHECK(map.scale == std::array<float, 2>{2, 3});
+      CHECK(map.offset == std::array<float, 2>{0.5f, 0});
+      CHECK(map.clamp);
+    }
+  CHECK(map_of("map_Kd wood -s fine.pfm", "wood -s fine.pfm").used());
 }
 
 TEST_CASE("normals and texture coordinates stay with their triangles") {
