@@ -70,4 +70,5 @@ def main():
     Path(picture).write_text(plot(rows, names), encoding="utf-8")
 
 
-main()
+if __name__ == "__main__":
+    main()

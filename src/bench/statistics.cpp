@@ -26,7 +26,8 @@ double efficiency(double error, double seconds) { return 1 / (error * seconds); 
 double PowerLaw::error_at(double seconds) const { return constant * std::pow(seconds, -slope); }
 
 std::optional<double> PowerLaw::seconds_to(double error) const {
-  if (!(slope > 0)) return std::nullopt;
+  constexpr double least_slope = 0.1;
+  if (!(slope >= least_slope)) return std::nullopt;
   return std::pow(constant / error, 1 / slope);
 }
 

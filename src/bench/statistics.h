@@ -22,7 +22,7 @@ struct PowerLaw {
   bool is_fitted = false;  ///< else the slope is assumed: points of one time tell none
 
   double error_at(double seconds) const;
-  /// When the error is reached; nothing if it never is (slope <= 0).
+  /// When the error is reached; nothing if the error hardly falls (slope < 0.1), as that of a biased render.
   std::optional<double> seconds_to(double error) const;
 };
 

@@ -1,11 +1,14 @@
 #include <fmt/core.h>
 
+#include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
 
 #include "bench/report.h"
 #include "castray/error.h"
+#include "castray/image.h"
 #include "cli/bench_meter.h"
 #include "cli/commands.h"
 #include "cli/configuration.h"
@@ -56,6 +59,23 @@ void check_flags(const BenchFlags& flags) {
     if (!file.empty()) check_writable(file);
 }
 
+/// A contender's name as part of a file's.
+std::string file_word(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+  return name;
+}
+
+void write_pictures(const std::filesystem::path& folder, const BenchScene& scene) {
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const std::string& name, const Image& image) {
+    write_image(folder / fmt::format("{}.{}.png", scene.name, file_word(name)), image);
+  };
+  write("reference", scene.reference_image);
+  for (const BenchCurve& curve : scene.curves)
+    if (curve.equal_time) write(curve.name, curve.equal_time->image);
+}
+
 int bench(const BenchFlags& flags, const std::string& command) {
   check_flags(flags);
   BenchReport report{CASTRAY_VERSION, cpu_name(),
@@ -69,6 +89,7 @@ int bench(const BenchFlags& flags, const std::string& command) {
     if (!flags.csv.empty()) write_file(flags.csv, bench_csv(report));
     if (!flags.html.empty()) write_file(flags.html, bench_html(report));
     if (!flags.svg.empty()) write_file(flags.svg, bench_svg(report));
+    if (!flags.pictures.empty()) write_pictures(flags.pictures, report.scenes.back());
   }
   meter.clear();
   fmt::print("{}", bench_table(report));
@@ -108,6 +129,8 @@ Run add_bench(Arguments& arguments, const CommonFlags& common) {
   arguments.add("--csv", flags->csv, "FILE", "write the medians here");
   arguments.add("--html", flags->html, "FILE", "write a self-contained page here");
   arguments.add("--svg", flags->svg, "FILE", "write the plots here");
+  arguments.add("--pictures", flags->pictures, "FOLDER",
+                "write the pictures at equal time here, as SCENE.NAME.png");
   return [flags, &common] {
     flags->quiet = common.quiet;
     if (flags->spp.empty() && flags->seconds.empty()) flags->spp = {4, 16, 64};

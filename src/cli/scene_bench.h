@@ -22,7 +22,7 @@ struct BenchFlags {
   std::string mask = "emitters";
   bool ablation = false;
   int threads = 0;
-  std::string json, csv, html, svg;
+  std::string json, csv, html, svg, pictures;
   bool quiet = false;
 };
 

@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "castray/image.h"
@@ -43,10 +45,11 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
       "itself=" + program +
       " render {scene} --integrator reference --spp {spp} --seed {seed} --size {width}x{height} "
       "--threads 1 -q -o {out} && echo seconds: 0.25";
-  const RunResult result = run_castray(
-      small_bench({"--config", "plain=--integrator reference", "--peer", peer, "--json", "r.json", "--csv",
-                   "r.csv", "--html", "r.html", "--svg", "r.svg", "--ablation", "--equal-time", "0.0625"}),
-      folder.path());
+  const RunResult result =
+      run_castray(small_bench({"--config", "plain=--integrator reference", "--peer", peer, "--json", "r.json",
+                               "--csv", "r.csv", "--html", "r.html", "--svg", "r.svg", "--pictures", "p",
+                               "--ablation", "--equal-time", "0.0625"}),
+                  folder.path());
   CAPTURE(result.err);
   REQUIRE(result.exit_code == 0);
   CHECK(result.err.empty());
@@ -71,6 +74,11 @@ TEST_CASE("bench measures castray and a peer, and writes table, JSON, CSV, page 
   CHECK(plain["points"][1]["relmse"] < plain["points"][0]["relmse"]);
   CHECK(itself["equal_time"]["spp"] == 1);
   CHECK(itself["detail"] == peer.substr(peer.find('=') + 1));
+
+  for (const char* name : {"reference", "plain", "itself"})
+    CHECK(read_image(folder / "p" / fmt::format("cornell_box.{}.png", name)).image.width == 32);
+  CHECK(read_image(folder / "p" / "cornell_box.plain.png").image.pixels !=
+        read_image(folder / "p" / "cornell_box.reference.png").image.pixels);
 
   const auto& ablation = scene["ablation"];
   const auto independent = std::find_if(ablation.begin(), ablation.end(),

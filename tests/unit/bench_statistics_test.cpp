@@ -53,6 +53,8 @@ TEST_CASE("a fit of one point takes slope 1, of none does not exist, of growing 
   const std::vector<TimeAndError> useless{{0, 1}, {1, -1e-9}};
   REQUIRE_FALSE(fit_power_law(useless));
   const std::vector<TimeAndError> growing{{1, 0.01}, {2, 0.02}};
+  const TimeAndError flat[] = {{1, 0.0101}, {100, 0.01}};
+  REQUIRE_FALSE(fit_power_law(flat)->seconds_to(0.001));
   REQUIRE_FALSE(fit_power_law(growing)->seconds_to(0.001));
 }
 
