@@ -145,7 +145,7 @@ struct FilmFile {
   template <class T>
   static const char* read_values(const char* at, std::vector<T>& values, std::size_t count) {
     values.resize(count);
-    std::memcpy(values.data(), at, count * sizeof(T));
+    if (count > 0) std::memcpy(values.data(), at, count * sizeof(T));
     return at + count * sizeof(T);
   }
 
