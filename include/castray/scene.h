@@ -6,29 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "castray/camera.h"
 #include "castray/error.h"
 #include "castray/material.h"
 #include "castray/vec.h"
 
 namespace castray {
-
-/// A pinhole. Right-handed; `right` = `forward` x `up`. All of unit length and mutually orthogonal.
-struct Camera {
-  Vec3d position;
-  Vec3d forward{0, 0, 1}, right{-1, 0, 0}, up{0, 1, 0};
-  double tan_half_fov = 0.36397023426620234;  ///< of the vertical field of view
-
-  /// The direction (not of unit length) of sample (px,py) in [0,width)x[0,height), y downwards.
-  Vec3d direction(double px, double py, int width, int height) const {
-    const double x = (2 * px / width - 1) * tan_half_fov * width / height;
-    const double y = (1 - 2 * py / height) * tan_half_fov;
-    return right * x + up * y + forward;
-  }
-};
-
-/// `position`, `look_at` and `up` in one space; fov vertical, in degrees. Throws InputError where they define
-/// no view.
-Camera make_camera(const Vec3d& position, const Vec3d& look_at, const Vec3d& up, double fov);
 
 /// A rendering flag of a scene file's "render" section.
 struct RenderDefault {
@@ -110,6 +93,8 @@ struct Scene {
   const Material& material_of(std::uint32_t triangle) const { return materials[triangle_material[triangle]]; }
   Vec3d to_world(const Vec3d& p) const { return center + p * unit; }
   Vec3d to_scene(const Vec3d& p) const { return (p - center) / unit; }
+  Camera to_world(const Camera& camera) const;
+  Camera to_scene(const Camera& camera) const;
 };
 
 /// A view, in scene space, that frames all of `scene` in its image size. It looks from the front right above

@@ -39,12 +39,13 @@ Counts count(const Scene& scene) {
   Counts counts;
   for (int i = 0; i < side * side; ++i) {
     const double x = (i % side + 0.5) * scene.width / side, y = (i / side + 0.5) * scene.height / side;
-    const Vec3d direction = normalize(scene.camera.direction(x, y, scene.width, scene.height));
-    const Hit<double> hit = bvh.closest(Ray<double>{scene.camera.position, direction});
+    const CameraRay ray = scene.camera.ray(x, y, scene.width, scene.height, 0, 0);
+    const Vec3d direction = normalize(ray.direction);
+    const Hit<double> hit = bvh.closest(Ray<double>{ray.origin, direction});
     if (!hit.found()) continue;
     const Vec3d normal = corners_of(scene, hit.triangle).normal();
     const double towards_camera = dot(normal, direction) > 0 ? -1 : 1;
-    const Vec3d p = scene.camera.position + direction * (hit.t * (1 - 1e-6));
+    const Vec3d p = ray.origin + direction * (hit.t * (1 - 1e-6));
     bool facing = false, reached = false;
     for (std::size_t l = 0; l < scene.lights.size(); l += step) {
       const Corners light = corners_of(scene, scene.lights[l]);

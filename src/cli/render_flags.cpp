@@ -288,7 +288,7 @@ Camera camera_of(const CameraFlags& given, const Scene& scene) {
                                          : own.position + own.forward;
   const double own_fov = std::atan(own.tan_half_fov) * 360 / std::numbers::pi;
   return make_camera(position, look_at, given.up.value_or(given.position ? Vec3d(0, 1, 0) : own.up),
-                     given.fov.value_or(own_fov));
+                     given.fov.value_or(own_fov), own);
 }
 
 }  // namespace

@@ -38,6 +38,13 @@ View view_of(const Scene& scene, const char* separator) {
           number(std::atan(c.tan_half_fov) * 360 / std::numbers::pi, decimals)};
 }
 
+std::string lens_json(const Lens& lens) {
+  std::string text =
+      fmt::format(R"("radius": {:.7g}, "focus_distance": {:.7g})", lens.radius, lens.focus_distance);
+  if (lens.blades > 0) text += fmt::format(R"(, "blades": {}, "rotation": {:g})", lens.blades, lens.rotation);
+  return fmt::format(R"("lens": {{ {} }})", text);
+}
+
 }  // namespace
 
 bool is_dark(const Scene& scene) { return scene.lights.empty() && max_component(scene.environment) == 0; }
@@ -56,8 +63,17 @@ std::string view_flags(const Scene& scene) {
 
 std::string view_json(const Scene& scene) {
   const View view = view_of(scene, ", ");
-  return fmt::format(R"("camera": {{ "position": [{}], "look_at": [{}], "up": [{}], "fov": {} }})",
-                     view.position, view.look_at, view.up, view.fov);
+  const Camera camera = scene.to_world(scene.camera);
+  std::string text =
+      fmt::format(R"("position": [{}], "look_at": [{}], "up": [{}])", view.position, view.look_at, view.up);
+  if (camera.projection == Projection::perspective) text += fmt::format(R"(, "fov": {})", view.fov);
+  if (camera.projection == Projection::orthographic)
+    text += fmt::format(R"(, "type": "orthographic", "height": {:.7g})", 2 * camera.half_height);
+  if (camera.projection == Projection::panorama) text += R"(, "type": "panorama")";
+  if (camera.shift_x != 0 || camera.shift_y != 0)
+    text += fmt::format(R"(, "shift": [{:g}, {:g}])", camera.shift_x, camera.shift_y);
+  if (camera.has_lens()) text += ", " + lens_json(camera.lens);
+  return fmt::format(R"("camera": {{ {} }})", text);
 }
 
 }  // namespace castray::cli

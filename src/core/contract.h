@@ -25,6 +25,8 @@ struct PathBlocks {
   static constexpr uint32_t camera = 0;
   /// Point on the lens (2), for a camera that has one.
   static constexpr uint32_t lens = 0xffffffffu;
+  /// The same where vertex k of a path from a light is seen.
+  CASTRAY_CONTRACT static uint32_t lens_of_light_path(uint32_t vertex) { return lens - vertex; }
   /// At vertex k >= 0 (0 is the camera's hit): direction (2), light point of vertex k + 1 (2).
   CASTRAY_CONTRACT static uint32_t direction(uint32_t vertex) { return 1 + 2 * vertex; }
   /// At vertex k: direction to an environment that is sampled (2), spare (2).

@@ -69,6 +69,10 @@ std::uint64_t scene_hash(const Scene& scene) {
   if (const EnvironmentImage& image = scene.environment_image; image.used())
     hash.add(image.texture), hash.add(image.scale), hash.add(image.rotation);
   hash.add(camera.tan_half_fov);
+  if (camera.projection != Projection::perspective) hash.add(camera.projection), hash.add(camera.half_height);
+  if (camera.shift_x != 0 || camera.shift_y != 0) hash.add(camera.shift_x), hash.add(camera.shift_y);
+  if (const Lens& lens = camera.lens; camera.has_lens())
+    hash.add(lens.radius), hash.add(lens.focus_distance), hash.add(lens.blades), hash.add(lens.rotation);
   hash.add(scene.unit);
   hash.add(scene.positions);
   hash.add(scene.triangles);

@@ -58,8 +58,11 @@ class CastRay {
     const std::array<float, 4> u = draw(path, PathBlocks::camera);
     const double jitter_x = options_.jitter ? u[0] : 0.5, jitter_y = options_.jitter ? u[1] : 0.5;
     path.light_u = {T(u[2]), T(u[3])};
-    const Vec3d direction = scene_.camera.direction(x + jitter_x, y + jitter_y, width, height);
-    const Vec3<T> radiance = cast_ray({Vec3<T>(scene_.camera.position), Vec3<T>(normalize(direction))}, path,
+    const Camera& camera = scene_.camera;
+    const std::array<float, 4> lens =
+        camera.has_lens() ? draw(path, PathBlocks::lens) : std::array<float, 4>{};
+    const CameraRay ray = camera.ray(x + jitter_x, y + jitter_y, width, height, lens[0], lens[1]);
+    const Vec3<T> radiance = cast_ray({Vec3<T>(ray.origin), Vec3<T>(normalize(ray.direction))}, path,
                                       textbook_.camera_sees_emitters() ? Arrival::whole() : Arrival::none());
     rays += path.rays;
     return radiance;

@@ -17,7 +17,7 @@ namespace {
 /// on.
 Scene in_file_coordinates(Scene scene) {
   for (Vec3f& p : scene.positions) p = Vec3f(scene.to_world(Vec3d(p)));
-  scene.camera.position = scene.to_world(scene.camera.position);
+  scene.camera = scene.to_world(scene.camera);
   scene.center = {};
   scene.unit = 1;
   return scene;

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "materials/descriptor.h"
 #include "materials/environment_image.h"
+#include "scene/camera_reader.h"
 #include "scene/json_reader.h"
 #include "scene/material_reader.h"
 #include "scene/obj_mesh.h"
@@ -61,34 +62,18 @@ class SceneFileReader {
     if (const JsonNode* node = scene.find("environment")) read_environment(*node);
     if (const JsonNode* node = scene.find("materials")) read_materials(*node);
     const JsonNode* camera = scene.find("camera");
-    if (camera) read_camera(*camera);
+    if (camera) builder_.scene.camera = read_camera(*camera);
     read_meshes(read_array(scene.require("meshes"), "\"meshes\""));
     Scene result = builder_.finish();
     result.has_camera = camera;
     if (camera)
-      result.camera.position = result.to_scene(result.camera.position);
+      result.camera = result.to_scene(result.camera);
     else
       result.camera = automatic_camera(result);
     return result;
   }
 
  private:
-  void read_camera(const JsonNode& node) {
-    const ObjectReader camera(node, "\"camera\"", keys_of("camera"));
-    const Vec3d position = read_vector(camera.require("position"), "\"position\"");
-    const Vec3d look_at = read_vector(camera.require("look_at"), "\"look_at\"");
-    const JsonNode* up = camera.find("up");
-    const JsonNode* fov = camera.find("fov");
-    constexpr Range angle{.least = 0, .greatest = 180, .above_least = true, .below_greatest = true};
-    const double degrees = fov ? read_number(*fov, "\"fov\"", angle) : 40;
-    try {
-      builder_.scene.camera =
-          make_camera(position, look_at, up ? read_vector(*up, "\"up\"") : Vec3d{0, 1, 0}, degrees);
-    } catch (const InputError& error) {
-      throw InputError(node.place, error.what());
-    }
-  }
-
   void read_image_size(const JsonNode& node) {
     const ObjectReader image(node, "\"image\"", keys_of("image"));
     Scene& scene = builder_.scene;
@@ -250,7 +235,8 @@ const std::vector<SceneSection>& scene_sections() {
   static const std::vector<SceneSection> sections = [] {
     std::vector<SceneSection> all = {
         {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "environment"}},
-        {"camera", {"position", "look_at", "up", "fov"}},
+        {"camera", camera_keys},
+        {"lens", lens_keys},
         {"image", {"width", "height"}},
         {"environment", {"radiance", "image", "scale", "rotation"}},
         {"map", map_keys()},

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cameras/pinhole_lanes.h"
+#include "cameras/camera_lanes.h"
 #include "wavefront/surfaces_lanes.h"
 #include "wavefront/trace_lanes.h"
 
@@ -23,23 +23,26 @@ struct CameraConnections {
   VecArray<capacity> splat, by_chance;  ///< as in Splats
 };
 
-/// Starts a camera ray to each vertex in the image, one for each hit.
-CASTRAY_STAGE inline void aim_camera(const Context& c, const LightPathJob& job, const Vertices& vertices,
-                                     const Hits& hits, CameraConnections& out) {
+/// Starts a camera ray to each vertex in the image, one for each hit. `vertex`: their number in their paths.
+CASTRAY_STAGE inline void aim_camera(const Context& c, const LightPathJob& job, uint32_t vertex,
+                                     const Vertices& vertices, const Hits& hits, CameraConnections& out) {
   const KernelCamera& camera = c.scene.camera;
-  const Vec position = broadcast(camera.position), one{Float(1.f), Float(1.f), Float(1.f)};
+  const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   Paths& rays = out.rays;
   rays.count = 0;
   for (int i = 0; i < vertices.count; i += width) {
-    const Vec towards = load(vertices.p, i) - position;
-    const SeenPoint at = see_point(camera, towards);
+    const Vec p = load(vertices.p, i);
+    const Numbers<2> lens = camera.has_lens ? draw<2>(c.options.sobol, sequence_of(vertices.names, i),
+                                                      PathBlocks::lens_of_light_path(vertex))
+                                            : Numbers<2>{Float(0.f), Float(0.f)};
+    const SeenPoint at = see_point(camera, p, lens.u[0], lens.u[1]);
     const Mask seen =
         first_lanes(vertices.count - i) & (length_squared(load(vertices.normal, i)) > Float(0.f)) &
         (at.pixels_per_solid_angle > Float(0.f)) & (at.px >= Float(0.f)) & (at.py >= Float(0.f)) &
         (at.px < Float((float)job.width)) & (at.py < Float((float)job.height));
     const int n = rays.count;
-    compress_store(rays.o, n, seen, position);
-    compress_store(rays.d, n, seen, towards);
+    compress_store(rays.o, n, seen, at.origin);
+    compress_store(rays.d, n, seen, p - at.origin);
     compress_store(rays.throughput, n, seen, one);
     compress_store(rays.arrival + n, seen, Float(0.f));
     compress_store(rays.eta2 + n, seen, Float(1.f));
@@ -62,10 +65,10 @@ CASTRAY_INLINE Mask reaches(Uint found, Uint aimed_at, Float t) {
 
 /// The radiance that the vertices of light paths send to the camera, as a splat each.
 template <class Geometry, uint32_t features>
-CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, const Vertices& vertices,
-                                  const Hits& hits, const Emissions& emissions, Radiance& unused,
-                                  CameraConnections& to) {
-  aim_camera(c, job, vertices, hits, to);
+CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, uint32_t vertex,
+                                  const Vertices& vertices, const Hits& hits, const Emissions& emissions,
+                                  Radiance& unused, CameraConnections& to) {
+  aim_camera(c, job, vertex, vertices, hits, to);
   closest<Geometry>(c, to.rays, true, to.hits);
   surfaces<Geometry, features, true>(c, to.rays, to.hits, false, to.seen, unused);
   for (int i = 0; i < to.rays.count; i += width) {

@@ -1,6 +1,6 @@
 #include "wavefront/camera_rays_lanes.h"
 
-#include "cameras/pinhole_lanes.h"
+#include "cameras/camera_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 
 namespace castray::CASTRAY_ISA {
@@ -45,7 +45,9 @@ void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
     const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
     const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));
     const Float py = to_float(y) + (c.options.jitter ? n.u[1] : Float(0.5f));
-    const CameraRay ray = camera_ray(camera, px, py);
+    const Numbers<2> lens = camera.has_lens ? draw<2>(c.options.sobol, {key, Uint(index)}, PathBlocks::lens)
+                                            : Numbers<2>{Float(0.f), Float(0.f)};
+    const CameraRay ray = camera_ray(camera, px, py, lens.u[0], lens.u[1]);
     store(paths.o, i, ray.o);
     store(paths.d, i, ray.d);
     store(paths.throughput, i, Vec{Float(1.f), Float(1.f), Float(1.f)});

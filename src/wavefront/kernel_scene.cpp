@@ -1,6 +1,6 @@
 #include "wavefront/kernel_scene.h"
 
-#include "cameras/pinhole.h"
+#include "cameras/camera.h"
 #include "lights/covered_lights.h"
 #include "materials/surface_values.h"
 
@@ -86,7 +86,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   view.albedos = materials.albedos.data();
   view.details = materials.details.data();
   view.camera = kernel_camera(scene.camera, width, height);
-  view.geometry.list.camera_slack = static_cast<float>(0x1p-21 * (2 + length(scene.camera.position)));
+  view.geometry.list.camera_slack = static_cast<float>(0x1p-21 * (2 + farthest_origin(scene.camera, width, height)));
 }
 
 void KernelSceneData::use(LightRegionTable regions, const Scene& scene) {

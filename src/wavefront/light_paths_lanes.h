@@ -75,7 +75,7 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
     surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
     if (vertex > 1) {
       CameraConnections& to = s.to_camera;
-      connect_camera<Geometry, features>(c, job, s.vertices, s.hits, s.light_paths, s.radiance, to);
+      connect_camera<Geometry, features>(c, job, vertex, s.vertices, s.hits, s.light_paths, s.radiance, to);
       sink.add(sink.self, {to.rays.count,
                            to.x,
                            to.y,

@@ -60,9 +60,9 @@ class Batch {
     names_.clear();
     for (int i = first; i < std::min(first + batch, paths); ++i) {
       constexpr double golden = 0.6180339887498949;
-      const Vec3d d = scene_.camera.direction((i + 0.5) / paths * width,
-                                              fraction((i + 0.5) * golden) * height, width, height);
-      rays.push_back({Vec3f(scene_.camera.position), Vec3f(normalize(d))});
+      const CameraRay ray = scene_.camera.ray((i + 0.5) / paths * width,
+                                              fraction((i + 0.5) * golden) * height, width, height, 0, 0);
+      rays.push_back({Vec3f(ray.origin), Vec3f(normalize(ray.direction))});
       names_.push_back(static_cast<std::uint32_t>(i));
     }
     return rays;

@@ -155,7 +155,8 @@ class WavefrontRun {
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
         row_locks_(static_cast<std::size_t>(bands_)) {
     for (int i = 0; i < job.threads; ++i) workplaces_.emplace_back(kernel);
-    if (!job.options.jitter && !scene.geometry.tree.partial.triangles) find_first_hits();
+    if (!job.options.jitter && !scene.camera.has_lens && !scene.geometry.tree.partial.triangles)
+      find_first_hits();
   }
 
   /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are

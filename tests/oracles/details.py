@@ -201,19 +201,24 @@ def inverse_erfc(p):
     return low
 
 
-def main(arguments):
-    if arguments[0] == "--write":
-        mi.set_variant(*(arguments[1:] or ["scalar_rgb"]))
-        FOLDER.mkdir(parents=True, exist_ok=True)
-        (FOLDER / "card.obj").write_text("# A square with texture coordinates.\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
-                                         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n")
-        write_images()
-        for name, (material, _) in CASES.items():
-            write_scene(name, material)
-            estimate = by_mitsuba(name, spp=256, seeds=32, first_seed=1000)
-            write_pfm(FOLDER / f"{name}_mean.pfm", estimate.mean)
-            write_pfm(FOLDER / f"{name}_variance.pfm", estimate.variance)
-        return True
+def write_estimate(name):
+    estimate = by_mitsuba(name, spp=256, seeds=32, first_seed=1000)
+    write_pfm(FOLDER / f"{name}_mean.pfm", estimate.mean)
+    write_pfm(FOLDER / f"{name}_variance.pfm", estimate.variance)
+
+
+def write(variant):
+    mi.set_variant(variant)
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    (FOLDER / "card.obj").write_text("# A square with texture coordinates.\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
+                                     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n")
+    write_images()
+    for name, (material, _) in CASES.items():
+        write_scene(name, material)
+        write_estimate(name)
+
+
+def check_all(castray):
     mi.set_variant("scalar_rgb")
     ways = {"shared": ["--reuse", "8x8:64"], "plain": ["--reuse", "off"], "tree": ["--accel", "bvh"]}
     tests = len(CASES) * (1 + len(ways))
@@ -222,9 +227,12 @@ def main(arguments):
         anew = by_mitsuba(name, spp=16, seeds=32, first_seed=1)
         good &= check(f"{name}, as stored", stored(name), anew, tests)
         for way, flags in ways.items():
-            good &= check(f"{name}, {way}", by_castray(arguments[0], name, flags, spp=16, seeds=32), anew, tests)
+            good &= check(f"{name}, {way}", by_castray(castray, name, flags, spp=16, seeds=32), anew, tests)
     return good
 
 
 if __name__ == "__main__":
-    sys.exit(0 if main(sys.argv[1:]) else 1)
+    if sys.argv[1] == "--write":
+        write(*(sys.argv[2:] or ["scalar_rgb"]))
+    else:
+        sys.exit(0 if check_all(sys.argv[1]) else 1)
