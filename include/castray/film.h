@@ -111,6 +111,9 @@ class Film {
   /// A film of the same render, of another window, without samples.
   Film without_samples(const Window& window) const;
 
+  /// The film of a part of the window, with its sums. Of a film between two passes; without replicates.
+  Film part(const Window& window) const;
+
   /// Adds the sums of `other`, whose window lies in this one's, and which is of the same render and has no
   /// sample of a pixel that this film has. `samples` are left to the caller.
   void add(const Film& other);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "castray/film.h"
+#include "castray/scene.h"
 
 namespace castray {
 
@@ -26,8 +27,11 @@ struct Reuse {
 
 /// All that a render depends on besides the scene. Defaults are those of the command line.
 struct RenderOptions {
-  int width = 0, height = 0;           ///< full image; 0: the scene's
-  std::optional<Window> crop;          ///< only x0..y1 are read
+  int width = 0, height = 0;   ///< full image; 0: the scene's
+  std::optional<Window> crop;  ///< only x0..y1 are read
+  /// A view of the prepared scene in place of its own, in scene space; the size may then be another one than
+  /// it was prepared for. What pilots decided stays. Not with the reference integrator.
+  std::optional<Camera> camera;
   std::uint64_t spp = 64;              ///< samples per pixel; with a target error, the most
   std::optional<SampleRange> samples;  ///< only these sample indices; else 0 .. spp-1
   /// With `samples`: those of the whole render, of which they are a part; noted in the film.

@@ -25,6 +25,7 @@ struct Subcommand {
 constexpr Subcommand subcommands[] = {
     // in the order of use
     {"render", "render a scene to an image", add_render},
+    {"serve", "show a scene on a local page: it converges, turns, is exposed and saved", add_serve},
     {"compare", "measure how an image differs from its reference", add_compare},
     {"accept", "make an image the reference", add_accept},
     {"bench", "time against error, of castray and of other renderers", add_bench},

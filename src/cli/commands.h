@@ -16,6 +16,7 @@ Run add_compare(Arguments& arguments, const CommonFlags& common);
 Run add_accept(Arguments& arguments, const CommonFlags& common);
 Run add_info(Arguments& arguments, const CommonFlags& common);
 Run add_merge(Arguments& arguments, const CommonFlags& common);
+Run add_serve(Arguments& arguments, const CommonFlags& common);
 Run add_submit(Arguments& arguments, const CommonFlags& common);
 Run add_convert(Arguments& arguments, const CommonFlags& common);
 Run add_bench(Arguments& arguments, const CommonFlags& common);

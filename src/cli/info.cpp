@@ -129,7 +129,8 @@ void print_scene_info(const std::string& file, const CommonFlags& common) {
   print_geometry(scene);
   print_lights(scene);
   fmt::print("image      {} x {}\n", scene.width, scene.height);
-  fmt::print("view       {}\n           {}\n", view_flags(scene), view_json(scene));
+  fmt::print("view       {}\n           {}\n", view_flags(scene, scene.camera),
+             view_json(scene, scene.camera));
   print_materials(scene);
   print_plan(scene);
   if (common.quiet) return;

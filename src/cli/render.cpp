@@ -8,7 +8,6 @@
 #include "cli/display_flags.h"
 #include "cli/interrupt.h"
 #include "cli/memory_limit.h"
-#include "cli/phase.h"
 #include "cli/render_command.h"
 #include "cli/render_report.h"
 #include "cli/render_run.h"
@@ -29,15 +28,6 @@ bool is_as_asked(const RenderRequest& request, Stopped stopped) {
   return stopped == Stopped::done || (stopped == Stopped::time_limit && request.until_time_limit);
 }
 
-/// Reads the scene. Its own defaults are not known before.
-Scene load_told(const RenderCommand& command, const CommonFlags& common) {
-  RenderRequest given;
-  for (const GivenFlag& flag : command.given)
-    if (flag.flag->name == std::string_view("progress")) flag.flag->set(given, flag.flag->name, flag.value);
-  const Phase phase(common.quiet ? ProgressMode::off : given.progress, "reading " + command.scene);
-  return load_scene(command.scene);
-}
-
 /// The result is written without the limit, so that it is not lost.
 RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Scene& scene) {
   const MemoryNeed need = memory_need(window_of(scene.width, scene.height, request.options));
@@ -50,7 +40,7 @@ RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Sce
 int render_scene(const RenderCommand& command, const CommonFlags& common) {
   const RenderRun::Clock::time_point begin = RenderRun::Clock::now();
   catch_snapshot_requests();
-  Scene scene = load_told(command, common);
+  Scene scene = load_told(command.scene, command.given, common);
   RenderRequest request = request_of(command, common, scene);
   check(request);
   apply_flags(request, scene);

@@ -4,6 +4,7 @@
 
 #include "castray/error.h"
 #include "cli/display_flags.h"
+#include "cli/phase.h"
 #include "cli/shell_word.h"
 #include "core/files.h"
 
@@ -11,21 +12,32 @@ namespace castray::cli {
 
 namespace fs = std::filesystem;
 
+void declare_flag(Arguments& arguments, const RenderFlag& flag, std::vector<GivenFlag>& given) {
+  arguments
+      .add_text((flag.letter ? std::string{'-', flag.letter, ','} : "") + "--" + flag.name, flag.metavar,
+                flag.help,
+                [&given, &flag](const std::string& value) {
+                  given.push_back({&flag, value});
+                })
+      .group(flag.group);
+}
+
 void declare_flags(Arguments& arguments, RenderCommand& command) {
   arguments.add_positional("SCENE", command.scene, "scene .json, or .obj; - is a scene on the standard input")
       .required();
-  for (const RenderFlag& flag : render_flags())
-    arguments
-        .add_text((flag.letter ? std::string{'-', flag.letter, ','} : "") + "--" + flag.name, flag.metavar,
-                  flag.help,
-                  [&command, &flag](const std::string& value) {
-                    command.given.push_back({&flag, value});
-                  })
-        .group(flag.group);
+  for (const RenderFlag& flag : render_flags()) declare_flag(arguments, flag, command.given);
   arguments
       .add("-o,--output", command.outputs, "FILE",
            "image or film, repeatable; .ppm .png .pfm .hdr .exr .film [SCENE.png here]")
       .group("Output");
+}
+
+Scene load_told(const std::string& file, const std::vector<GivenFlag>& given, const CommonFlags& common) {
+  RenderRequest request;
+  for (const GivenFlag& flag : given)
+    if (flag.flag->name == std::string_view("progress")) flag.flag->set(request, flag.flag->name, flag.value);
+  const Phase phase(common.quiet ? ProgressMode::off : request.progress, "reading " + file);
+  return load_scene(file);
 }
 
 bool RenderCommand::is_given(std::string_view flag) const {

@@ -19,8 +19,14 @@ struct RenderCommand {
   bool is_given(std::string_view flag) const;
 };
 
+/// Declares one flag; what the command line says of it is added to `given`, which outlives the parsing.
+void declare_flag(Arguments& arguments, const RenderFlag& flag, std::vector<GivenFlag>& given);
+
 /// Declares SCENE, all flags of `castray render`, and -o.
 void declare_flags(Arguments& arguments, RenderCommand& command);
+
+/// Reads the scene, and says so if that takes long. Its own defaults are not known before.
+Scene load_told(const std::string& file, const std::vector<GivenFlag>& given, const CommonFlags& common);
 
 /// Throws InputError where a value cannot be, also one of the scene's own defaults.
 RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene);

@@ -27,11 +27,9 @@ struct View {
   std::string position, look_at, up, fov;
 };
 
-View view_of(const Scene& scene, const char* separator) {
+View view_of(const Scene& scene, const Camera& c, const char* separator) {
   constexpr int decimals = 6;
-  const Camera& c = scene.camera;
-  // What is looked at lies as far away as the scene's middle, or nearly.
-  const double distance = std::max(0.1, dot(-c.position, c.forward));
+  const double distance = view_distance(c);
   return {world_point(scene, c.position, separator),
           world_point(scene, c.position + c.forward * distance, separator),
           numbers(c.up, decimals, separator),
@@ -49,21 +47,23 @@ std::string lens_json(const Lens& lens) {
 
 bool is_dark(const Scene& scene) { return scene.lights.empty() && max_component(scene.environment) == 0; }
 
+double view_distance(const Camera& camera) { return std::max(0.1, dot(-camera.position, camera.forward)); }
+
 std::string world_point(const Scene& scene, const Vec3d& in_scene_space, const char* separator) {
   constexpr double told_apart = 0x1p-20;  // of `unit`: some floats' distance
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(scene.unit * told_apart))), 0, 300);
   return numbers(scene.to_world(in_scene_space), decimals, separator);
 }
 
-std::string view_flags(const Scene& scene) {
-  const View view = view_of(scene, ",");
+std::string view_flags(const Scene& scene, const Camera& camera) {
+  const View view = view_of(scene, camera, ",");
   return fmt::format("--look-from {} --look-at {} --up {} --fov {}", view.position, view.look_at, view.up,
                      view.fov);
 }
 
-std::string view_json(const Scene& scene) {
-  const View view = view_of(scene, ", ");
-  const Camera camera = scene.to_world(scene.camera);
+std::string view_json(const Scene& scene, const Camera& in_scene) {
+  const View view = view_of(scene, in_scene, ", ");
+  const Camera camera = scene.to_world(in_scene);
   std::string text =
       fmt::format(R"("position": [{}], "look_at": [{}], "up": [{}])", view.position, view.look_at, view.up);
   if (camera.projection == Projection::perspective) text += fmt::format(R"(, "fov": {})", view.fov);

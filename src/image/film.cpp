@@ -205,6 +205,27 @@ Film Film::without_samples(const Window& window) const {
   return film;
 }
 
+Film Film::part(const Window& window) const {
+  Film film = without_samples(window);
+  if (keeps_splats()) film.keep_splats();
+  const auto columns = static_cast<std::size_t>(window.width());
+  const auto copy_row = [&](const auto& from, auto& to, std::size_t each, int y) {
+    std::copy_n(&from[each * index(window.x0, y)], each * columns, &to[each * film.index(window.x0, y)]);
+  };
+  for (int y = window.y0; y < window.y1; ++y) {
+    copy_row(sums_, film.sums_, 3, y);
+    copy_row(counts_, film.counts_, 1, y);
+    if (differences_.kept())
+      film.differences_.add(film.index(window.x0, y), differences_, index(window.x0, y), columns);
+    if (!keeps_splats()) continue;
+    copy_row(splats_, film.splats_, 3, y);
+    copy_row(light_paths_, film.light_paths_, 1, y);
+  }
+  film.samples = samples;
+  film.nonfinite_samples = film.missing_samples();  // no others are missing between passes
+  return film;
+}
+
 std::string Film::difference_from(const Film& other) const {
   if (key != other.key) return difference_of_keys(key, other.key);
   if (version != other.version) return "castray " + version + " against castray " + other.version;
@@ -286,7 +307,8 @@ std::string samples_text(double samples_per_pixel) {
 
 Metadata describe(const Film& film) {
   // What the scene is, and what pilots decided; all other items are flags.
-  static constexpr std::string_view no_flags[] = {"scene", "hash", "sharing", "light-paths", "light-choice"};
+  static constexpr std::string_view no_flags[] = {"scene",   "hash",        "view",
+                                                  "sharing", "light-paths", "light-choice"};
   Metadata metadata;
   std::string& options = metadata["castray:options"];
   for (const std::string& item : items_of(film.key)) {

@@ -58,6 +58,21 @@ void add_map(Hash& hash, const TextureMap& map) {
   hash.add(map.channel);
 }
 
+void add_optics(Hash& hash, const Camera& camera) {
+  hash.add(camera.tan_half_fov);
+  if (camera.projection != Projection::perspective) hash.add(camera.projection), hash.add(camera.half_height);
+  if (camera.shift_x != 0 || camera.shift_y != 0) hash.add(camera.shift_x), hash.add(camera.shift_y);
+  if (const Lens& lens = camera.lens; camera.has_lens())
+    hash.add(lens.radius), hash.add(lens.focus_distance), hash.add(lens.blades), hash.add(lens.rotation);
+}
+
+std::uint64_t view_hash(const Camera& camera) {
+  Hash hash;
+  for (const Vec3d& v : {camera.position, camera.forward, camera.right, camera.up}) hash.add(v);
+  add_optics(hash, camera);
+  return hash.value();
+}
+
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -68,11 +83,7 @@ std::uint64_t scene_hash(const Scene& scene) {
     hash.add(v);
   if (const EnvironmentImage& image = scene.environment_image; image.used())
     hash.add(image.texture), hash.add(image.scale), hash.add(image.rotation);
-  hash.add(camera.tan_half_fov);
-  if (camera.projection != Projection::perspective) hash.add(camera.projection), hash.add(camera.half_height);
-  if (camera.shift_x != 0 || camera.shift_y != 0) hash.add(camera.shift_x), hash.add(camera.shift_y);
-  if (const Lens& lens = camera.lens; camera.has_lens())
-    hash.add(lens.radius), hash.add(lens.focus_distance), hash.add(lens.blades), hash.add(lens.rotation);
+  add_optics(hash, camera);
   hash.add(scene.unit);
   hash.add(scene.positions);
   hash.add(scene.triangles);
@@ -124,6 +135,7 @@ std::string film_key(const SceneFacts& scene, const Job& job) {
                : o.reuse.width == 0
                    ? "off"
                    : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
+  if (o.camera) add("view", fmt::format("{:016x}", view_hash(*o.camera)));
   if (o.caustics != Switch::automatic) add("caustics", name_in(switch_names, o.caustics));
   if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
   if (o.target_error) add("target-error", *o.target_error);

@@ -83,6 +83,7 @@ void check_reference(const RenderOptions& o) {
           "--reuse: " + reference + " shares no paths" + leave + (by_epsilon ? "" : " or off"));
   require(o.caustics != Switch::on, "--caustics on: " + reference + " has no paths from lights" + leave);
   require(o.reconstruct != Switch::on, "--reconstruct on: " + reference + " shares no paths" + leave);
+  require(!o.camera, reference + " shows no other view of a prepared scene; prepare it anew");
   require(o.isa == "auto" || o.isa == "scalar",
           "--isa " + o.isa + ": " + reference + " has no vector kernels" + leave);
 }
@@ -115,6 +116,13 @@ Integrator choose_integrator(const RenderOptions& o, Fault fault) {
   return Integrator::wavefront;
 }
 
+/// A bound of what an image multiplies a material's emission by, alpha included; at least 1.
+double greatest_factor(const Scene& scene, const TextureMap& map) {
+  if (!map.used()) return 1;
+  const float texel = std::max(greatest_value(scene.textures[static_cast<std::size_t>(map.texture)]), 1.f);
+  return std::max(1.0, map.base + std::max(map.gain, 0.f) * double{texel});
+}
+
 double brightest_emission(const Scene& scene) {
   double brightest = max_component(scene.environment);
   if (const EnvironmentImage& image = scene.environment_image; image.used())
@@ -122,7 +130,9 @@ double brightest_emission(const Scene& scene) {
         brightest,
         image.scale * double{greatest_value(scene.textures[static_cast<std::size_t>(image.texture)])});
   for (const Material& material : scene.materials)
-    brightest = std::max(brightest, max_component(material.ke));
+    if (material.emits())
+      brightest = std::max(
+          brightest, max_component(material.ke) * greatest_factor(scene, material.map(SurfaceParameter::ke)));
   return brightest;
 }
 

@@ -14,12 +14,13 @@ namespace {
 /// The name of an option in which `job` differs from the one that a scene was prepared for; or null.
 const char* misfit(const Job& job, const Job& prepared) {
   const RenderOptions &a = job.options, &b = prepared.options;
-  if (job.window.full_width != prepared.window.full_width ||
-      job.window.full_height != prepared.window.full_height)
+  if (!a.camera && (job.window.full_width != prepared.window.full_width ||
+                    job.window.full_height != prepared.window.full_height))
     return "--size";
   if (a.integrator != b.integrator) return "--integrator";
   if (a.precision != b.precision) return "--precision";
   if (a.epsilon != b.epsilon) return "--epsilon";
+  if (a.max_depth != b.max_depth) return "--max-depth";
   if (a.lights != b.lights) return "--lights";
   if (a.mis != b.mis) return "--mis";
   if (a.caustics != b.caustics) return "--caustics";

@@ -85,8 +85,12 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   view.materials = materials.materials.data();
   view.albedos = materials.albedos.data();
   view.details = materials.details.data();
-  view.camera = kernel_camera(scene.camera, width, height);
-  view.geometry.list.camera_slack = static_cast<float>(0x1p-21 * (2 + farthest_origin(scene.camera, width, height)));
+  look_through(view, scene.camera, width, height);
+}
+
+void look_through(KernelScene& view, const Camera& camera, int width, int height) {
+  view.camera = kernel_camera(camera, width, height);
+  view.geometry.list.camera_slack = static_cast<float>(0x1p-21 * (2 + farthest_origin(camera, width, height)));
 }
 
 void KernelSceneData::use(LightRegionTable regions, const Scene& scene) {

@@ -36,4 +36,7 @@ struct KernelSceneData {
   KernelScene view{};
 };
 
+/// Makes a camera that of the view, for an image of this size.
+void look_through(KernelScene& view, const Camera& camera, int width, int height);
+
 }  // namespace castray

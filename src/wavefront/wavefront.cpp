@@ -154,6 +154,8 @@ class WavefrontRun {
         trace_light_paths_(options_.light_paths ? kernel.trace_light_paths[plan.features] : nullptr),
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
         row_locks_(static_cast<std::size_t>(bands_)) {
+    if (job.options.camera)
+      look_through(scene_, *job.options.camera, window_.full_width, window_.full_height);
     for (int i = 0; i < job.threads; ++i) workplaces_.emplace_back(kernel);
     if (!job.options.jitter && !scene.camera.has_lens && !scene.geometry.tree.partial.triangles)
       find_first_hits();

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Drives the web pages that castray writes in headless Chromium, on a desktop and a phone, light and dark:
+"""Drives the web pages that castray writes and serves in headless Chromium, on a desktop and a phone, light and dark:
 pages.py CASTRAY [SCREENSHOT_FOLDER]."""
 import pathlib
 import shutil
@@ -8,6 +8,7 @@ import tempfile
 
 import bench_page
 import compare_page
+import serve_page
 from playwright.sync_api import sync_playwright
 
 SCREENS = [("desktop", (1280, 900), "light"), ("phone", (390, 844), "light"), ("dark", (1280, 900), "dark"),
@@ -31,23 +32,29 @@ def check_width(page):
 
 
 def drive(browser, address, check, pictures, name):
-    """Opens the page on each screen, offline. Errors of scripts and requests of other addresses are faults."""
+    """Opens the page on each screen, offline unless it is served. Errors of scripts and requests of other addresses are
+    faults."""
+    served = address.startswith("http:")
+    own = (address,) if served else ("file:", "data:", "blob:")
     problems = []
     for kind, size, scheme in SCREENS:
-        context = browser.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, offline=True)
+        context = browser.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=scheme, offline=not served,
+                                      has_touch=kind.endswith("phone"))
         page = context.new_page()
         page.on("pageerror", lambda error: problems.append(str(error)))
         page.on("console", lambda message: message.type == "error" and problems.append(message.text))
-        page.on("request", lambda request: request.url.startswith(("file:", "data:", "blob:"))
-                or problems.append(request.url))
+        page.on("request", lambda request: request.url.startswith(own) or problems.append(request.url))
         page.goto(address)
         if name == "compare":
             page.wait_for_selector("[data-ready=yes]")
+        if name == "serve":
+            page.wait_for_function("() => document.getElementById('canvas').width > 1")
         if pictures:
             page.screenshot(path=pictures / f"{name}-{kind}.png", full_page=True)
         check_colours(page, scheme)
         check_width(page)
         check(page, kind)
+        context.close()
     assert not problems, problems
 
 
@@ -62,6 +69,8 @@ def main():
             folder.mkdir()
             address = module.make_page(castray, folder).as_uri()
             drive(browser, address, module.check, pictures, module.__name__.removesuffix("_page"))
+        with serve_page.Served(castray, pathlib.Path(name)) as served:
+            drive(browser, served.address, served.check, pictures, "serve")
     print("the pages work")
 
 

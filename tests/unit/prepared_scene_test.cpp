@@ -5,6 +5,7 @@
 
 #include "castray/error.h"
 #include "film_bytes.h"
+#include "materials/texture.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -42,7 +43,6 @@ TEST_CASE("a prepared scene renders any samples, seed and window as if each were
       same([](RenderOptions& o) { o.samples = SampleRange{5, 2}; });
       same([](RenderOptions& o) { o.crop = Window{0, 0, 3, 5, 20, 11}; });
       same([](RenderOptions& o) { o.jitter = false; });
-      same([](RenderOptions& o) { o.max_depth = 2; });
       same([](RenderOptions& o) { o.sampler = SamplerKind::independent; });
       same([](RenderOptions& o) { o.threads = 3; });
       same([](RenderOptions&) {});
@@ -93,6 +93,7 @@ TEST_CASE("options that a scene was not prepared for are refused by name") {
   refused([](RenderOptions& o) { o.epsilon = 1e-3; }, "--integrator");
   refused([](RenderOptions& o) { o.lights = LightSampling::area; }, "--lights");
   refused([](RenderOptions& o) { o.mis = Switch::on; }, "--mis");
+  refused([](RenderOptions& o) { o.max_depth = 2; }, "--max-depth");
   refused([](RenderOptions& o) { o.isa = "other"; }, "--isa");
   refused([](RenderOptions& o) { o.accel = AccelKind::bvh; }, "--accel");
   refused([](RenderOptions& o) { o.build = BuildQuality::best; }, "--build");
@@ -102,6 +103,70 @@ TEST_CASE("options that a scene was not prepared for are refused by name") {
   RenderOptions wide = options_of(Integrator::reference);
   wide.precision = Precision::float64;
   CHECK_THROWS_WITH(render(exact, wide), Contains("--precision"));
+}
+
+TEST_CASE("another view of a prepared scene is the image of a scene prepared for it, in any size") {
+  for (const char* name : {"cornell_box", "cornell_conductor"}) {
+    const Scene scene = standard_scene(name);
+    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh}) {
+      RenderOptions options = options_of(Integrator::wavefront);
+      options.accel = accel;
+      options.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 16};  // as no pilot decides
+      options.caustics = Switch::off;
+      const PreparedScene prepared(scene, options);
+      Scene turned = scene;
+      turned.camera = make_camera({0.3, 0.2, -1.5}, {0, -0.1, 0}, {0, 1, 0}, 50);
+      options.width = 20, options.height = 30;
+      const Image expected = render(turned, options).film.image();
+      options.camera = turned.camera;
+      const Film film = render(prepared, options).film;
+      CHECK(film.image().pixels == expected.pixels);
+      CHECK_THAT(film.key, Contains("; view="));
+      CHECK(film.difference_from(render(turned, options).film).empty() == false);
+    }
+  }
+  RenderOptions reference = options_of(Integrator::reference);
+  const Scene scene = standard_scene("cornell_box");
+  const PreparedScene prepared(scene, reference);
+  reference.camera = scene.camera;
+  CHECK_THROWS_WITH(render(prepared, reference), Contains("no other view"));
+}
+
+TEST_CASE("the film of a part of the window goes on as a crop does") {
+  for (const char* name : {"cornell_box", "cornell_conductor"})
+    for (const Switch reconstruct : {Switch::off, Switch::automatic}) {
+      const Scene scene = standard_scene(name);
+      RenderOptions options = options_of(Integrator::wavefront);
+      options.reconstruct = reconstruct;
+      const PreparedScene prepared(scene, options);
+      const Film whole = render(prepared, options).film;
+      options.crop = Window{0, 0, 3, 5, 20, 11};
+      const Film part = whole.part({24, 24, 3, 5, 20, 11});
+      CHECK(bytes(part) == bytes(render(prepared, options).film));
+      options.spp = 7;
+      CHECK(bytes(render(prepared, options, {}, &part).film) == bytes(render(prepared, options).film));
+    }
+}
+
+TEST_CASE("a film's scale bounds what an image makes of an emission") {
+  SceneSketch sketch;
+  sketch.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0},
+                  sketch.add_material({.name = "m", .ke = {3, 2, 1}}));
+  Scene& scene = sketch.scene;
+  const auto scale = [&] { return render(scene, options_of(Integrator::wavefront)).film.scale(); };
+  CHECK(scale() == 4);
+  scene.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  scene.triangle_uvs = {{0, 1, 2}, {0, 2, 3}};
+  Image image(1, 1);
+  image.at(0, 0) = {0.1f, 10, 0};
+  scene.textures.push_back(make_texture("t", image));
+  TextureMap& map = scene.materials[0].map(SurfaceParameter::ke);
+  map.texture = 0;
+  CHECK(scale() == 32);
+  map.gain = 100, map.base = 5;
+  CHECK(scale() == 4096);
+  map.gain = -1, map.base = 0;
+  CHECK(scale() == 4);
 }
 
 TEST_CASE("what a progress callback throws is thrown by render") {
