@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Images on materials against Mitsuba: colours, holes, normals, heights, roughness.
+"""Images on materials against Mitsuba: colours, holes, normals, heights, metals; of scene files and of MTL.
 
 details.py CASTRAY renders the scenes of tests/golden/details anew with Mitsuba, and holds against that the block means
-stored there and what castray renders, by z-test. details.py --write [VARIANT] makes the folder; castray's unit tests read it.
+stored there and what castray renders, by z-test: scene files and MTL, shared and plain paths, each instruction set.
+details.py --write [VARIANT [NAME...]] makes the folder, or these scenes of it; castray's tests read it.
 """
 import json
 import math
@@ -28,26 +29,49 @@ UNSHADOWED = {"use_shadowing_function": False, "flip_invalid_normals": False}
 # may be: it is black beside such cards.
 BLACK_FLOOR = ("normals", "heights")
 
-# The card: a material of castray's, and the same in Mitsuba.
+# The card: a material of castray's, the same as MTL, and the same in Mitsuba.
 CASES = {
     "colours": (
         {"type": "diffuse", "kd": {"image": "colours.png", "scale": [2, 3], "offset": [0.3, 0.1], "factor": [0.9, 0.9, 0.9]}},
+        "Kd .9 .9 .9\nmap_Kd -s 2 3 1 -o .3 .1 0 colours.png\n",
         lambda: diffuse(bitmap("colours.png", scale=(2, 3), offset=(0.3, 0.1)), 0.9)),
     "holes": (
         {"type": "diffuse", "kd": [0.6, 0.3, 0.1], "coverage": {"image": "holes.png"}},
+        "Kd .6 .3 .1\nillum 1\nmap_d holes.png\n",
         lambda: {"type": "mask", "opacity": bitmap("holes.png", raw=True), "bsdf": plain([0.6, 0.3, 0.1])}),
     "normals": (
         {"type": "diffuse", "kd": [0.7, 0.7, 0.7], "normal_map": {"image": "normals.png"}},
+        "Kd .7 .7 .7\nnorm normals.png\n",
         lambda: twosided({"type": "normalmap", **UNSHADOWED, "normalmap": bitmap("normals.png", raw=True), "bsdf": plain([0.7, 0.7, 0.7])})),
     "heights": (
         {"type": "diffuse", "kd": [0.7, 0.7, 0.7], "bump_map": {"image": "heights.png", "gain": 0.15}},
+        "Kd .7 .7 .7\nmap_Bump -bm .15 heights.png\n",
         lambda: twosided({"type": "bumpmap", **UNSHADOWED, "texture": bitmap("heights.png", raw=True), "scale": 0.15,
                           "bsdf": plain([0.7, 0.7, 0.7])})),
     # Narrow lobes, where separable and correlated masking agree.
     "metal": (
         {"type": "principled", "kd": {"image": "colours.png"}, "metallic": 1, "roughness": 0.25},
+        "map_Kd colours.png\nPr .25\nmap_Pm -mm 1 0 holes.png\n",
         lambda: twosided({"type": "principled", "base_color": bitmap("colours.png"), "metallic": 1.0, "roughness": 0.25})),
+    "mirror": (
+        {"type": "conductor", "reflectance": {"image": "colours.png"}, "roughness": 0.3},
+        "map_Kd colours.png\nPr .3\nPm 1\n",
+        lambda: twosided({"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": 0.09,
+                          "specular_reflectance": bitmap("colours.png")})),
 }
+
+
+CARD = """# A square with texture coordinates.
+v -1 -1 0
+v 1 -1 0
+v 1 1 0
+v -1 1 0
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+f 1/1 2/2 3/3 4/4
+"""
 
 
 def write_images():
@@ -62,15 +86,23 @@ def write_images():
         Image.fromarray(image.astype(np.uint8)).save(FOLDER / f"{name}.png", optimize=True)
 
 
-def write_scene(name, material):
+def write_scene(name):
+    material, mtl, _ = CASES[name]
+    write_json(name, {"obj": "card.obj", "material": "card"}, {"card": material})
+    (FOLDER / f"{name}.mtl").write_text(f"newmtl card\n{mtl}")
+    (FOLDER / f"{name}.obj").write_text(f"mtllib {name}.mtl\nusemtl card\n{CARD}")
+    write_json(f"{name}_mtl", {"obj": f"{name}.obj"}, {})
+
+
+def write_json(name, card, materials):
     scene = {
         "camera": {"position": [0, 1.5, 4.5], "look_at": [0, 0.8, 0], "up": [0, 1, 0], "fov": 35},
         "image": {"width": SIDE, "height": SIDE},
         "environment": {"radiance": SKY},
-        "materials": {"card": material, "floor": {"type": "diffuse", "kd": floor(name)},
+        "materials": {**materials, "floor": {"type": "diffuse", "kd": floor(name)},
                       "lamp": {"type": "diffuse", "kd": [0, 0, 0], "ke": LAMP}},
         "meshes": [
-            {"obj": "card.obj", "material": "card", "transform": [{"rotate": [1, 0, 0, -25]}, {"translate": [0, 1, 0]}]},
+            {**card, "transform": [{"rotate": [1, 0, 0, -25]}, {"translate": [0, 1, 0]}]},
             {"obj": "card.obj", "material": "floor",
              "transform": [{"scale": 3}, {"rotate": [1, 0, 0, -90]}]},
             {"obj": "card.obj", "material": "lamp",
@@ -79,7 +111,7 @@ def write_scene(name, material):
 
 
 def floor(name):
-    return [0.0 if name in BLACK_FLOOR else 0.5] * 3
+    return [0.0 if name.removesuffix("_mtl") in BLACK_FLOOR else 0.5] * 3
 
 
 def bitmap(name, raw=False, scale=(1, 1), offset=(0, 0)):
@@ -123,7 +155,7 @@ def mitsuba_scene(name):
                    "film": {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}},
                    "sampler": {"type": "independent"}},
         "sky": {"type": "constant", "radiance": rgb(SKY)},
-        "card": shape(CASES[name][1](), t().translate([0, 1, 0]).rotate([1, 0, 0], -25)),
+        "card": shape(CASES[name][2](), t().translate([0, 1, 0]).rotate([1, 0, 0], -25)),
         "floor": shape(plain(floor(name)), t().rotate([1, 0, 0], -90).scale(3)),
         "lamp": shape(plain([0, 0, 0]), t().translate([0.5, 3.2, 1]).rotate([1, 0, 0], 90),
                       emitter={"type": "area", "radiance": rgb(LAMP)})})
@@ -207,32 +239,48 @@ def write_estimate(name):
     write_pfm(FOLDER / f"{name}_variance.pfm", estimate.variance)
 
 
-def write(variant):
+def write(variant="scalar_rgb", *names):
     mi.set_variant(variant)
     FOLDER.mkdir(parents=True, exist_ok=True)
-    (FOLDER / "card.obj").write_text("# A square with texture coordinates.\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n"
-                                     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n")
+    (FOLDER / "card.obj").write_text(CARD)
     write_images()
-    for name, (material, _) in CASES.items():
-        write_scene(name, material)
+    for name in names or CASES:
+        write_scene(name)
         write_estimate(name)
 
 
 def check_all(castray):
     mi.set_variant("scalar_rgb")
-    ways = {"shared": ["--reuse", "8x8:64"], "plain": ["--reuse", "off"], "tree": ["--accel", "bvh"]}
-    tests = len(CASES) * (1 + len(ways))
+    ways = ways_of(castray)
+    scenes = {name: [s for s in (name, f"{name}_mtl") if (FOLDER / f"{s}.json").exists()] for name in CASES}
+    tests = len(CASES) + len(ways) * sum(map(len, scenes.values()))
     good = True
     for name in CASES:
         anew = by_mitsuba(name, spp=16, seeds=32, first_seed=1)
         good &= check(f"{name}, as stored", stored(name), anew, tests)
-        for way, flags in ways.items():
-            good &= check(f"{name}, {way}", by_castray(castray, name, flags, spp=16, seeds=32), anew, tests)
+        for scene in scenes[name]:
+            for way, flags in ways.items():
+                good &= check(f"{scene}, {way}", by_castray(castray, scene, flags, spp=16, seeds=32), anew, tests)
     return good
+
+
+def ways_of(castray):
+    """Flags, by what they ask for; without --accel small scenes are in a list, but those with images on surfaces in a tree."""
+    reuse = {"shared": ["--reuse", "8x8:64"], "plain": ["--reuse", "off"]}
+    sets = [isa for isa in ("scalar", "sse4", "avx2", "avx512") if runs(castray, isa)]
+    built_of = {isa: ["--isa", isa] for isa in sets} | {"tree": ["--accel", "bvh"]}
+    return {f"{built}, {way}": more + flags for built, more in built_of.items() for way, flags in reuse.items()}
+
+
+def runs(castray, isa):
+    """Whether castray has this instruction set, and the processor too."""
+    scene = FOLDER / f"{next(iter(CASES))}.json"
+    command = [castray, "render", scene, "-q", "--spp", "1", "--size", "8x8", "--isa", isa, "-o", "-"]
+    return subprocess.run(command, capture_output=True).returncode == 0
 
 
 if __name__ == "__main__":
     if sys.argv[1] == "--write":
-        write(*(sys.argv[2:] or ["scalar_rgb"]))
+        write(*sys.argv[2:])
     else:
         sys.exit(0 if check_all(sys.argv[1]) else 1)

@@ -14,34 +14,53 @@ namespace {
 /// A stored image, a pixel for each block.
 std::vector<double> stored(const std::string& name) { return block_means(read_image(name).image, 1); }
 
-/// By every way of rendering: 18 tests a scene, at a false-alarm rate of 1e-5 each.
+/// As the folder's files NAME_mean.pfm and NAME_variance.pfm show it.
+struct Expected {
+  std::vector<double> mean, variance;
+  explicit Expected(const std::string& file)
+      : mean(stored(file + "_mean.pfm")), variance(stored(file + "_variance.pfm")) {}
+};
+
+/// Has a false-alarm rate of 1e-5.
+void check(const std::string& file, const Expected& expected, Way way) {
+  const Scene scene = load_scene(file);
+  way.options.width = scene.width, way.options.height = scene.height;
+  // shared whatever the pilot would say of these scenes
+  if (way.options.reuse.automatic && way.options.integrator == Integrator::wavefront)
+    way.options.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 64};
+  const BlockScores scores =
+      block_scores(blocks_of(scene, way.options, 12), expected.mean, expected.variance);
+  CAPTURE(file, way.name, scores.largest, scores.rms, scores.count);
+  CHECK(scores.count > 300);
+  CHECK(scores.largest < score_limit(scores.count, 1e-5));
+  CHECK(scores.rms < 1.2);  // of some 600 scores: 1 with a standard error of 0.03
+}
+
+const std::string golden = std::string(CASTRAY_ROOT) + "/tests/golden/";
+const std::vector<std::string> details{"colours", "holes", "normals", "heights", "metal", "mirror"};
+
+/// By every way of rendering: 18 tests a scene.
 void check_against_mitsuba(const std::string& folder, const std::vector<std::string>& names) {
-  for (const std::string& name : names) {
-    const std::string file = std::string(CASTRAY_ROOT) + "/tests/golden/" + folder + "/" + name;
-    const Scene scene = load_scene(file + ".json");
-    const std::vector<double> mean = stored(file + "_mean.pfm"), variance = stored(file + "_variance.pfm");
-    for (Way way : every_way(wavefront_options(scene.width, 8, 1))) {
-      // shared whatever the pilot would say of these scenes
-      if (way.options.reuse.automatic && way.options.integrator == Integrator::wavefront)
-        way.options.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 64};
-      const BlockScores scores = block_scores(blocks_of(scene, way.options, 12), mean, variance);
-      CAPTURE(name, way.name, scores.largest, scores.rms, scores.count);
-      CHECK(scores.count > 300);
-      CHECK(scores.largest < score_limit(scores.count, 1e-5));
-      CHECK(scores.rms < 1.2);  // of some 600 scores: 1 with a standard error of 0.03
-    }
-  }
+  for (const std::string& name : names)
+    for (const Way& way : every_way(wavefront_options(64, 8, 1)))
+      check(golden + folder + name + ".json", Expected(golden + folder + name), way);
 }
 
 }  // namespace
 
-TEST_CASE(
-    "textures, holes, normal and bump maps and metal are as Mitsuba shows them, by every way of rendering",
-    "[statistical]") {
-  check_against_mitsuba("details", {"colours", "holes", "normals", "heights", "metal"});
+TEST_CASE("images on materials are as Mitsuba shows them, by every way of rendering", "[statistical]") {
+  check_against_mitsuba("details/", details);
+}
+
+TEST_CASE("MTL's images on materials are as Mitsuba shows them", "[statistical]") {
+  for (const std::string& name : details) {
+    const std::string file = golden + "details/" + name;
+    check(file + "_mtl.json", Expected(file), {"plain", plain(wavefront_options(64, 8, 2))});
+    check(file + "_mtl.json", Expected(file), {"shared", wavefront_options(64, 8, 3)});
+  }
 }
 
 TEST_CASE("a lens, parallel rays and a shift are as Mitsuba shows them, by every way of rendering",
           "[statistical]") {
-  check_against_mitsuba("cameras", {"lens", "orthographic", "shift"});
+  check_against_mitsuba("cameras/", {"lens", "orthographic", "shift"});
 }
