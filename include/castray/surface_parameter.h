@@ -19,11 +19,14 @@ enum class SurfaceParameter : uint8_t {
   alpha,      ///< GGX width
   roughness,  ///< its square root
   metallic,
+  sheen,
+  clearcoat,
+  clearcoat_roughness,
   coverage,
   normal,  ///< the shading normal in the frame of the texture coordinates, (r,g,b) = (1 + n) / 2
   bump,    ///< the shading normal by a height
 };
-inline constexpr int surface_parameters = 11;
+inline constexpr int surface_parameters = 14;
 
 /// What a surface parameter reads of an image: its colour (numbers take the luminance), or one channel.
 enum class Channel : uint8_t { color, red, green, blue, alpha, luminance };

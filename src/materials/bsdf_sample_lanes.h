@@ -17,8 +17,8 @@ struct Bsdf {
   Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side
   Uint albedo;  ///< microfacet, principled: offset of its lobe's table
   const KernelAlbedo* albedos;
-  Float metallic;  ///< principled, in whose lanes alone it is set
-  Uint record;     ///< offset of the material
+  Float metal_sheen, coat;  ///< principled, in whose lanes alone they are set: slot_metal_sheen, slot_coat
+  Uint record;              ///< offset of the material
   const KernelMaterial* materials;
 
   CASTRAY_INLINE Mask is(MaterialType t) const { return type == Uint((uint32_t)t); }

@@ -27,12 +27,16 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
     const Uint row =
         to_uint(fma(sqrt(b.alpha), gather(table, &KernelMaterial::albedo_rows, record), Float(0.5f)));
     b.albedo = b.albedo + row * uint32_t{albedo_floats};
-    b.metallic = p.value[slot_metallic];
+    b.metal_sheen = p.value[slot_metal_sheen];
+    b.coat = p.value[slot_coat];
   } else {
-    b.ks = gather_vec(fields_of(table, &KernelMaterial::value) + slot_ks, record);
-    b.alpha = gather(fields_of(table, &KernelMaterial::value) + slot_alpha, record);
-    if (any(b.is(MaterialType::principled)))
-      b.metallic = gather(fields_of(table, &KernelMaterial::value) + slot_metallic, record);
+    const float* values = fields_of(table, &KernelMaterial::value);
+    b.ks = gather_vec(values + slot_ks, record);
+    b.alpha = gather(values + slot_alpha, record);
+    if (any(b.is(MaterialType::principled))) {
+      b.metal_sheen = gather(values + slot_metal_sheen, record);
+      b.coat = gather(values + slot_coat, record);
+    }
   }
   return b;
 }

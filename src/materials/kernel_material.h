@@ -25,11 +25,19 @@ enum ParameterSlot : int {
   slot_ks = 3,     ///< microfacet, principled: F0; conductor: reflectance
   slot_alpha = 6,  ///< GGX width; 0 where the lobe is treated as perfectly smooth
   slot_emission = 7,
-  slot_metallic = 10,
-  vertex_floats = 11,
-  slot_coverage = 11,
-  parameter_floats = 12
+  slot_metal_sheen = 10,  ///< principled: metallic and sheen, as a pair of 16 bits each
+  slot_coat = 11,         ///< principled: clearcoat and its roughness, likewise
+  vertex_floats = 12,
+  slot_coverage = 12,
+  slot_metallic = 13,
+  slot_sheen = 14,
+  slot_clearcoat = 15,
+  slot_clearcoat_roughness = 16,
+  parameter_floats = 17
 };
+
+/// The greatest of a pair's numbers, which stands for 1. The first has the lower 16 bits.
+inline constexpr float most_of_pair = 65535;
 
 /// LobeAlbedo's table.
 inline constexpr int albedo_intervals = 128;
@@ -48,16 +56,19 @@ inline constexpr float least_left_for_base = 1e-4f;
 /// much.
 inline constexpr float sheen_albedo_terms[] = {0.08854f, -0.25093f, 0.27183f, -0.13747f, 0.02834f};
 
+/// Least width of a clear coat, never so smooth that light sampling could not find its lobe (Burley 2012).
+inline constexpr float least_clearcoat_alpha = 1e-3f;
+
 struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
   float ior;
-  float sheen, clearcoat, clearcoat_alpha;  ///< principled; of the last, the table is
-  uint32_t clearcoat_albedo;                ///< at this offset into MaterialTables::albedos
-  uint32_t type;                            ///< MaterialType
-  uint32_t traits;                          ///< MaterialTrait set
-  uint32_t albedo;      ///< microfacet, principled: offset in floats into MaterialTables::albedos
-  float albedo_rows;    ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
+  uint32_t type;              ///< MaterialType
+  uint32_t traits;            ///< MaterialTrait set
+  uint32_t albedo;            ///< microfacet, principled: offset in floats into MaterialTables::albedos
+  float albedo_rows;          ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
+  uint32_t clearcoat_albedo;  ///< principled: likewise
+  float clearcoat_rows;
   uint32_t detail;      ///< index + 1 into MaterialTables::details, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area
 };
@@ -95,7 +106,7 @@ struct KernelDetail {
   float value[parameter_floats];  ///< as the scene has them
   float least_alpha;              ///< where an image says less
   uint32_t albedo;                ///< as the material's
-  float albedo_rows;
+  float albedo_rows, clearcoat_rows;
 };
 
 /// All materials of a scene.

@@ -1,6 +1,8 @@
 #include "materials/kernel_materials.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
@@ -22,6 +24,12 @@ KernelAlbedo kernel_albedo(const LobeAlbedo& albedo) {
   k.mean_a = static_cast<float>(albedo.mean().a);
   k.mean_lost = static_cast<float>(albedo.mean().lost);
   return k;
+}
+
+/// Two numbers in [0,1]; see most_of_pair.
+float pack(double first, double second) {
+  const auto bits = [](double x) { return static_cast<std::uint32_t>(std::lround(x * most_of_pair)); };
+  return std::bit_cast<float>(bits(first) | bits(second) << 16);
 }
 
 KernelMap map_of(const TextureMap& map, const KernelTexture& texture) {
@@ -66,16 +74,22 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     k.albedo = albedo_offset(values[slot_alpha], lobe);
     descriptor.finish(lobe, values.data());
   }
-  if (m.type == MaterialType::principled) {
-    k.sheen = static_cast<float>(m.sheen);
-    k.clearcoat = static_cast<float>(m.clearcoat);
-    k.clearcoat_alpha = static_cast<float>(clearcoat_alpha(m));
-    k.clearcoat_albedo = albedo_offset(clearcoat_alpha(m), lobes_.of(clearcoat_alpha(m)));
+  if (has_clearcoat_rows(m)) {
+    k.clearcoat_albedo = albedo_rows();
+    k.clearcoat_rows = LobeAlbedoRows::steps;
+    values[slot_clearcoat_roughness] =
+        static_cast<double>(clearcoat_row(m.clearcoat_roughness)) / LobeAlbedoRows::steps;
+  } else if (m.type == MaterialType::principled) {
+    const double alpha = clearcoat_alpha(m.clearcoat_roughness);
+    k.clearcoat_albedo = albedo_offset(alpha, lobes_.of(alpha));
   }
   detail.albedo = k.albedo;
   detail.albedo_rows = k.albedo_rows;
+  detail.clearcoat_rows = k.clearcoat_rows;
   std::transform(values.begin(), values.begin() + vertex_floats, k.value,
                  [](double v) { return static_cast<float>(v); });
+  k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
+  k.value[slot_coat] = pack(values[slot_clearcoat], values[slot_clearcoat_roughness]);
 
   detail.normal = single_map(scene, m.map(SurfaceParameter::normal), 1);
   detail.bump = single_map(scene, m.map(SurfaceParameter::bump), static_cast<float>(1 / scene.unit));

@@ -15,11 +15,12 @@ class MaterialTable {
   explicit MaterialTable(const std::vector<Material>& materials) : materials_(materials) {
     bsdfs_.reserve(materials.size());
     for (const Material& m : materials) {
-      if (has_lobe_rows(m) && !rows_) rows_.emplace();
+      if ((has_lobe_rows(m) || has_clearcoat_rows(m)) && !rows_) rows_.emplace();
       SurfaceValues<double> values(m);
       LobeTables& lobes = lobes_.emplace_back();
       if (descriptor_of(m.type).finish && !has_lobe_rows(m)) lobes.own = &albedos_.of(values.at(slot_alpha));
-      if (m.type == MaterialType::principled) lobes.clearcoat = &albedos_.of(clearcoat_alpha(m));
+      if (m.type == MaterialType::principled && !has_clearcoat_rows(m))
+        lobes.clearcoat = &albedos_.of(clearcoat_alpha(m.clearcoat_roughness));
       bsdfs_.push_back(make(m, values, lobes_of(bsdfs_.size(), values)));
     }
   }
@@ -35,13 +36,19 @@ class MaterialTable {
   }
 
  private:
-  /// The tables of a material's lobes; rounds alpha where an image gives it.
+  /// The tables of a material's lobes; rounds their widths where an image gives them.
   LobeTables lobes_of(std::size_t material, SurfaceValues<double>& values) const {
     LobeTables lobes = lobes_[material];
-    if (!has_lobe_rows(materials_[material])) return lobes;
-    const int row = LobeAlbedoRows::row_of(values.at(slot_alpha));
-    values.at(slot_alpha) = LobeAlbedoRows::alpha_of(row);
-    lobes.own = &(*rows_)[row];
+    if (has_lobe_rows(materials_[material])) {
+      const int row = LobeAlbedoRows::row_of(values.at(slot_alpha));
+      values.at(slot_alpha) = LobeAlbedoRows::alpha_of(row);
+      lobes.own = &(*rows_)[row];
+    }
+    if (has_clearcoat_rows(materials_[material])) {
+      const int row = clearcoat_row(values.at(slot_clearcoat_roughness));
+      values.at(slot_clearcoat_roughness) = static_cast<double>(row) / LobeAlbedoRows::steps;
+      lobes.clearcoat = &(*rows_)[row];
+    }
     return lobes;
   }
 

@@ -13,11 +13,17 @@ namespace castray {
 
 const MaterialDescriptor& principled_descriptor();
 
-/// GGX's width of a material's clear coat, never so smooth that light sampling could not find its lobe.
-inline double clearcoat_alpha(const Material& m) {
-  constexpr double least = 1e-3;  // as of Burley 2012
-  return std::max(m.clearcoat_roughness * m.clearcoat_roughness, least);
+/// GGX's width of a clear coat of this roughness.
+inline double clearcoat_alpha(double roughness) {
+  return std::max(roughness * roughness, double{least_clearcoat_alpha});
 }
+
+/// Whether the albedo of a material's clear coat is looked up by the roughness of an image (LobeAlbedoRows);
+/// and the row of a roughness.
+inline bool has_clearcoat_rows(const Material& m) {
+  return m.type == MaterialType::principled && m.map(SurfaceParameter::clearcoat_roughness).used();
+}
+inline int clearcoat_row(double roughness) { return LobeAlbedoRows::row_of(clearcoat_alpha(roughness)); }
 
 /// A blend of metal and coated base under sheen and a clear coat, the parameters of Burley 2012:
 ///
@@ -41,15 +47,16 @@ struct Principled {
   static Principled make(const SurfaceValues<double>& values, const Material& m, const LobeTables& lobes) {
     const Vec3d kd = values.color(slot_kd), ks = values.color(slot_ks);
     const double metallic = values.at(slot_metallic);
-    return {.base = Vec3<T>(base_under(kd, ks, *lobes.own) * (1 - metallic)),
-            .ks = Vec3<T>(ks),
-            .f0 = Vec3<T>(ks + (kd - ks) * metallic),
-            .sheen = static_cast<T>(m.sheen * (1 - metallic)),
-            .clearcoat = static_cast<T>(m.clearcoat),
-            .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
-            .coat = {static_cast<T>(clearcoat_alpha(m)), m.correlated_masking},
-            .albedo = lobes.own,
-            .coat_albedo = lobes.clearcoat};
+    return {
+        .base = Vec3<T>(base_under(kd, ks, *lobes.own) * (1 - metallic)),
+        .ks = Vec3<T>(ks),
+        .f0 = Vec3<T>(ks + (kd - ks) * metallic),
+        .sheen = static_cast<T>(values.at(slot_sheen) * (1 - metallic)),
+        .clearcoat = static_cast<T>(values.at(slot_clearcoat)),
+        .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
+        .coat = {static_cast<T>(clearcoat_alpha(values.at(slot_clearcoat_roughness))), m.correlated_masking},
+        .albedo = lobes.own,
+        .coat_albedo = lobes.clearcoat};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {

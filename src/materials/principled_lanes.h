@@ -4,6 +4,18 @@
 
 namespace castray::CASTRAY_ISA {
 
+struct Pair {
+  Float first, second;
+};
+CASTRAY_INLINE Float pack(Pair p) {
+  const auto bits = [](Float x) { return to_uint(fma(x, Float(most_of_pair), Float(0.5f))); };
+  return as_float(bits(p.first) | bits(p.second) << 16);
+}
+CASTRAY_INLINE Pair unpack(Float packed) {
+  const Uint bits = as_uint(packed);
+  return {to_float(bits & Uint(0xffffu)) / Float(most_of_pair), to_float(bits >> 16) / Float(most_of_pair)};
+}
+
 /// Metal and coated base under sheen and a clear coat; see principled.h. Its functions are calls, with all by
 /// value: inlined, their many numbers would take the registers of all other models.
 struct Principled : ModelDefaults {
@@ -32,6 +44,12 @@ struct Principled : ModelDefaults {
 
   CASTRAY_INLINE static void finish(const KernelDetail& d, const KernelAlbedo*, Float* value) {
     round_alpha_to_row(d, value);
+    Float& coat = value[slot_clearcoat_roughness];
+    const Float steps(d.clearcoat_rows);
+    const Float least = sqrt(Float(least_clearcoat_alpha));
+    if (d.clearcoat_rows > 0) coat = to_float(to_uint(fma(max(coat, least), steps, Float(0.5f)))) / steps;
+    value[slot_metal_sheen] = pack({value[slot_metallic], value[slot_sheen]});
+    value[slot_coat] = pack({value[slot_clearcoat], coat});
   }
 
  private:
@@ -43,13 +61,17 @@ struct Principled : ModelDefaults {
     Uint coat_albedo;
 
     CASTRAY_INLINE Layers(const Bsdf& bsdf, Vec from) : b(bsdf), wo(from) {
-      const Float rest = Float(1.f) - b.metallic;
-      f0 = fma(b.kd - b.ks, b.metallic, b.ks);
+      const auto [metallic, cloth] = unpack(b.metal_sheen);
+      const auto [covered, roughness] = unpack(b.coat);
+      const Float rest = Float(1.f) - metallic;
+      f0 = fma(b.kd - b.ks, metallic, b.ks);
       base = base_under(b.albedos, b.albedo, b.kd, b.ks) * rest;
-      sheen = field(&KernelMaterial::sheen) * rest;
-      coat = field(&KernelMaterial::clearcoat);
-      coat_alpha = field(&KernelMaterial::clearcoat_alpha);
-      coat_albedo = gather(b.materials, &KernelMaterial::clearcoat_albedo, b.record);
+      sheen = cloth * rest;
+      coat = covered;
+      coat_alpha = max(square(roughness), Float(least_clearcoat_alpha));
+      const Float rows = gather(b.materials, &KernelMaterial::clearcoat_rows, b.record);
+      coat_albedo = gather(b.materials, &KernelMaterial::clearcoat_albedo, b.record) +
+                    to_uint(fma(roughness, rows, Float(0.5f))) * uint32_t{albedo_floats};
       left_o = left_by_lobe(b.albedos, b.albedo, b.ks, wo.z);
       find_shares();
     }
@@ -91,8 +113,6 @@ struct Principled : ModelDefaults {
     }
 
    private:
-    CASTRAY_INLINE Float field(float KernelMaterial::*f) const { return gather(b.materials, f, b.record); }
-
     struct Lobe {
       Float value, pdf;  ///< without Fresnel's term
     };

@@ -49,18 +49,26 @@ struct MapKey {
   MtlMap map;
 };
 constexpr MapKey map_keys[] = {
-    {"map_kd", MtlMap::kd},        {"map_ks", MtlMap::ks},
-    {"map_ke", MtlMap::ke},        {"map_ns", MtlMap::ns},
-    {"map_pr", MtlMap::roughness}, {"map_pm", MtlMap::metallic},
-    {"map_d", MtlMap::dissolve},   {"map_opacity", MtlMap::dissolve},
-    {"norm", MtlMap::normal},      {"map_kn", MtlMap::normal},
-    {"map_bump", MtlMap::bump},    {"bump", MtlMap::bump},
+    {"map_kd", MtlMap::kd},
+    {"map_ks", MtlMap::ks},
+    {"map_ke", MtlMap::ke},
+    {"map_ns", MtlMap::ns},
+    {"map_pr", MtlMap::roughness},
+    {"map_pm", MtlMap::metallic},
+    {"map_ps", MtlMap::sheen},
+    {"map_pc", MtlMap::clearcoat},
+    {"map_pcr", MtlMap::clearcoat_roughness},
+    {"map_d", MtlMap::dissolve},
+    {"map_opacity", MtlMap::dissolve},
+    {"norm", MtlMap::normal},
+    {"map_kn", MtlMap::normal},
+    {"map_bump", MtlMap::bump},
+    {"bump", MtlMap::bump},
 };
 
 /// What would change the picture, but is not done: numbers unless they are 0, and images.
 constexpr std::string_view numbers_not_done[] = {"aniso"};
-constexpr std::string_view maps_not_done[] = {"map_ps",     "map_pc", "map_pcr",  "map_aniso",
-                                              "map_anisor", "disp",   "map_disp", "decal"};
+constexpr std::string_view maps_not_done[] = {"map_aniso", "map_anisor", "disp", "map_disp", "decal"};
 
 class MtlReader {
  public:

@@ -14,8 +14,21 @@
 namespace castray {
 
 /// The images of a material, by what they change.
-enum class MtlMap : unsigned char { kd, ks, ke, ns, roughness, metallic, dissolve, normal, bump };
-inline constexpr int mtl_maps = 9;
+enum class MtlMap : unsigned char {
+  kd,
+  ks,
+  ke,
+  ns,
+  roughness,
+  metallic,
+  sheen,
+  clearcoat,
+  clearcoat_roughness,
+  dissolve,
+  normal,
+  bump
+};
+inline constexpr int mtl_maps = 12;
 
 /// What an MTL file says of one material; scene/mtl_material.h says what that means.
 struct MtlMaterial {

@@ -160,7 +160,10 @@ class Meaning {
   }
 
   /// Sheen or a clear coat.
-  bool has_layers() const { return mtl_.sheen.value_or(0) > 0 || mtl_.clearcoat.value_or(0) > 0; }
+  bool has_layers() const {
+    return mtl_.sheen.value_or(0) > 0 || mtl_.clearcoat.value_or(0) > 0 || is_mapped(MtlMap::sheen) ||
+           is_mapped(MtlMap::clearcoat);
+  }
 
   /// What the layer over the base reflects straight on.
   Vec3d specular(bool mapped) const {
@@ -203,12 +206,17 @@ class Meaning {
   void set_principled(const Vec3d& layer) {
     material_.type = MaterialType::principled;
     material_.ks = layer;
-    const bool mapped = set_map(metallic, MtlMap::metallic, ColorSpace::linear);
-    material_.metallic = mtl_.metallic.value_or(0);
-    if (mapped && material_.metallic == 0) material_.metallic = 1;
-    material_.sheen = mtl_.sheen.value_or(0);
-    material_.clearcoat = mtl_.clearcoat.value_or(0);
-    material_.clearcoat_roughness = mtl_.clearcoat_roughness.value_or(0);
+    material_.metallic = amount(mtl_.metallic, metallic, MtlMap::metallic);
+    material_.sheen = amount(mtl_.sheen, sheen, MtlMap::sheen);
+    material_.clearcoat = amount(mtl_.clearcoat, clearcoat, MtlMap::clearcoat);
+    material_.clearcoat_roughness =
+        amount(mtl_.clearcoat_roughness, clearcoat_roughness, MtlMap::clearcoat_roughness);
+  }
+
+  /// A number and its image; a number of 0, which would hide the image, counts as 1.
+  double amount(const std::optional<double>& given, SurfaceParameter parameter, MtlMap map) {
+    const double number = given.value_or(0);
+    return set_map(parameter, map, ColorSpace::linear) && number == 0 ? 1 : number;
   }
 
   void read_glass() {

@@ -80,11 +80,15 @@ Scene with_everything() {
     m.ks = {0.5, 0.3, 0.2};
     m.alpha = 0.5;
     m.metallic = 0.7;
+    m.sheen = m.clearcoat = m.clearcoat_roughness = 0.8;
     m.vertex_colors = i % 2;
     put_image(scene, m, SurfaceParameter::kd, 0.2, 1);
     put_image(scene, m, SurfaceParameter::ks, 0.1, 1);
     put_image(scene, m, SurfaceParameter::roughness, 0.4, 1);
     put_image(scene, m, SurfaceParameter::metallic, 0, 1);
+    put_image(scene, m, SurfaceParameter::sheen, 0, 1);
+    put_image(scene, m, SurfaceParameter::clearcoat, 0, 1);
+    put_image(scene, m, SurfaceParameter::clearcoat_roughness, 0.3, 1);
     put_image(scene, m, SurfaceParameter::normal, 0.35, 0.65);
     scene.materials[i] = m;
   }
@@ -141,6 +145,19 @@ TEST_CASE("the wavefront agrees with castRay on numbers by image", "[statistical
                      .clearcoat = 0.8,
                      .clearcoat_roughness = 0.3};
                 put_image(s, m, SurfaceParameter::roughness, 0.3, 1);
+              }));
+  check_scene("clear coat, its roughness and sheen", box_with([](Scene& s, Material& m) {
+                m = {.name = "cloth",
+                     .type = MaterialType::principled,
+                     .kd = {0.9, 0.1, 0.1},
+                     .ks = Vec3d(0.04),
+                     .alpha = 0.3,
+                     .sheen = 1,
+                     .clearcoat = 1,
+                     .clearcoat_roughness = 1};
+                put_image(s, m, SurfaceParameter::sheen, 0, 1);
+                put_image(s, m, SurfaceParameter::clearcoat, 0, 1);
+                put_image(s, m, SurfaceParameter::clearcoat_roughness, 0.2, 1);
               }));
   check_scene("metallic", box_with([](Scene& s, Material& m) {
                 m = {.name = "blend",

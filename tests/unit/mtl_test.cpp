@@ -130,6 +130,21 @@ TEST_CASE("Pc, Pcr and Ps are a clear coat and sheen") {
   CHECK(read("Kd .6 .1 .1\nPs 0\nPc 0\nPcr .03\n").type == MaterialType::diffuse);
 }
 
+TEST_CASE("map_Pc, map_Pcr and map_Ps are images of a clear coat, its roughness and sheen") {
+  const Material paint = read("Kd .5\nPc .8\nmap_Pc grey.pfm\nPcr 0\nmap_Pcr -mm .1 .5 grey.pfm\n");
+  CHECK(paint.type == MaterialType::principled);
+  CHECK(paint.map(clearcoat).used());
+  CHECK(paint.clearcoat == 0.8);
+  CHECK(paint.map(clearcoat_roughness).base == 0.1f);
+  CHECK(paint.clearcoat_roughness == 1);  // 0 would hide the image
+  CHECK(!paint.map(sheen).used());
+  const Material cloth = read("Kd .5\nPm 1\nmap_Ps grey.pfm\n");
+  CHECK(cloth.type == MaterialType::principled);
+  CHECK(cloth.map(sheen).used());
+  CHECK(cloth.sheen == 1);
+  CHECK(read("Kd .5\nmap_Pcr grey.pfm\n").type == MaterialType::diffuse);
+}
+
 TEST_CASE("files of Blender are read by its own convention") {
   const Material material = read("Ns 250\nKd .5\nKs .5 .5 .5\nNi 1.45\nd 1\nillum 2\n", blender);
   CHECK(material.type == MaterialType::microfacet);
@@ -224,7 +239,7 @@ TEST_CASE("options of images") {
 
 TEST_CASE("what is not done and would be seen is told") {
   CHECK(Read("aniso .5\n").warning() == "aniso is not done");
-  CHECK(Read("map_Pc grey.pfm\n").warning() == "map_Pc is not done");
+  CHECK(Read("map_aniso grey.pfm\n").warning() == "map_aniso is not done");
   CHECK(Read("Pc 0\nPs 0\naniso 0\nPcr .03\nKa 1 1 1\nsharpness 60\n").warning().empty());
   CHECK(Read("disp grey.pfm\n").warning() == "disp is not done");
 }
