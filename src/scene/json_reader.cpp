@@ -64,6 +64,11 @@ Vec3d read_vector(const JsonNode& node, std::string_view name, const Range& rang
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+Vec3d read_color(const JsonNode& node, std::string_view name, const Range& range) {
+  return node.type == JsonNode::Type::number ? Vec3d(read_number(node, name, range))
+                                             : read_vector(node, name, range);
+}
+
 const std::vector<JsonNode>& read_array(const JsonNode& node, std::string_view name) {
   expect(node, JsonNode::Type::array, name, "an array");
   return node.children;

@@ -17,6 +17,8 @@ int read_integer(const JsonNode& node, std::string_view name, int least, int gre
 const std::string& read_string(const JsonNode& node, std::string_view name);
 bool read_boolean(const JsonNode& node, std::string_view name);
 Vec3d read_vector(const JsonNode& node, std::string_view name, const Range& range = {});
+/// A number stands for three.
+Vec3d read_color(const JsonNode& node, std::string_view name, const Range& range);
 std::vector<double> read_numbers(const JsonNode& node, std::string_view name, std::size_t count,
                                  const Range& range = {});
 const std::vector<JsonNode>& read_array(const JsonNode& node, std::string_view name);

@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "materials/descriptor.h"
 #include "scene/file_finder.h"
+#include "scene/named_metals.h"
 
 namespace castray {
 
@@ -62,11 +63,21 @@ class MaterialReader {
 
   void read_constant(const MaterialKey& key, const JsonNode& node, const std::string& name) {
     if (key.kind == Kind::color)
-      material_.*std::get<Vec3d Material::*>(key.field) = read_vector(node, name, key.range);
+      material_.*std::get<Vec3d Material::*>(key.field) = read_color_of(key, node, name);
     else if (key.kind == Kind::flag)
       material_.*std::get<bool Material::*>(key.field) = read_boolean(node, name);
     else
       set_number(key, read_number(node, name, key.range));
+  }
+
+  /// A reflectance may be a metal's, by its name.
+  static Vec3d read_color_of(const MaterialKey& key, const JsonNode& node, const std::string& name) {
+    const bool is_reflectance = key.range.greatest <= 1;
+    if (node.type != JsonNode::Type::string || !is_reflectance)
+      return read_color(node, name, key.range);
+    std::vector<std::string_view> names;
+    for (const NamedMetal& metal : named_metals()) names.push_back(metal.name);
+    return named_metals()[choose(node, "metal", names)].reflectance;
   }
 
   void set_number(const MaterialKey& key, double value) {

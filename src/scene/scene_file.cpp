@@ -103,7 +103,7 @@ class SceneFileReader {
       throw InputError(radiance->key_place,
                        "\"radiance\" or \"image\", not both; \"scale\" makes an image brighter");
     if (radiance)
-      builder_.scene.environment = read_vector(*radiance, "\"radiance\"", not_negative);
+      builder_.scene.environment = read_color(*radiance, "\"radiance\"", not_negative);
     else
       read_environment_image(environment, *image);
   }

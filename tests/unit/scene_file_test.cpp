@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
@@ -170,6 +171,32 @@ TEST_CASE("parameters of materials may be images") {
   CHECK(m.map(SurfaceParameter::normal).gain == 0.5f);
   CHECK(m.map(SurfaceParameter::coverage).base == 1);
   CHECK_FALSE(m.map(SurfaceParameter::alpha).used());
+}
+
+TEST_CASE("a number stands for a grey, a metal's name for what it reflects straight on") {
+  const auto material = [](const std::string& keys) {
+    return load_text(
+        R"({ "materials": { "m": { )" + keys +
+        R"( } }, "meshes": [ { "obj": "t.obj", "material": "m" } ], "environment": { "radiance": 2 } })");
+  };
+  check_near(material(R"("type": "diffuse", "kd": 0.25)").materials[0].kd, Vec3d(0.25));
+  check_near(material(R"("type": "diffuse", "ke": 7)").materials[0].ke, Vec3d(7));
+  CHECK(material(R"("type": "diffuse")").environment == Vec3d(2));
+  // Aluminium and silver reflect evenly; gold and copper keep red; iron and chromium half of all.
+  const auto metal = [&](const std::string& name) {
+    return material(R"("type": "conductor", "reflectance": ")" + name + '"').materials[0].reflectance;
+  };
+  CHECK(metal("gold").x > metal("gold").y + 0.2);
+  CHECK(metal("gold").y > metal("gold").z + 0.3);
+  CHECK(metal("copper").x > metal("copper").y + 0.2);
+  for (const std::string name : {"silver", "aluminium", "iron", "chromium"}) {
+    const Vec3d color = metal(name);
+    CHECK(max_component(color) - std::min({color.x, color.y, color.z}) < 0.04);
+  }
+  CHECK(metal("silver").y > 0.95);
+  CHECK(metal("aluminium").y == Approx(0.92).margin(0.01));
+  CHECK(metal("iron").y == Approx(0.52).margin(0.02));
+  check_near(material(R"("type": "principled", "kd": "gold", "metallic": 1)").materials[0].kd, metal("gold"));
 }
 
 TEST_CASE("a light whose image is black everywhere is none") {
