@@ -58,7 +58,7 @@ TEST_CASE("the view that info prints as JSON is the same camera") {
                            R"("type": "orthographic", "height": 7)", R"("type": "panorama")"}) {
     const Scene scene =
         seen_by(R"("camera": { "position": [1, 2, 5], "look_at": [0, 1, 1], )" + std::string(keys) + " }");
-    const Scene again = seen_by(cli::view_json(scene));
+    const Scene again = seen_by(cli::view_json(scene, scene.camera));
     for (const double x : {0.0, 3.7, 10.0}) {
       const CameraRay a = scene.camera.ray(x, 2.5, 10, 8, 0.3, 0.6),
                       b = again.camera.ray(x, 2.5, 10, 8, 0.3, 0.6);

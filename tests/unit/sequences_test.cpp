@@ -69,21 +69,21 @@ bool is_sequence(std::uint32_t key, std::uint32_t block, const std::vector<std::
   return true;
 }
 
-struct Projection {
+struct PointProjection {
   std::vector<std::size_t> dims;
   int t;
 };
 
 /// The least t of each projection.
-const Projection projections[] = {{{0}, 0},    {{1}, 0},    {{2}, 0},    {{3}, 0},    {{0, 1}, 0},
-                                  {{0, 2}, 1}, {{1, 2}, 1}, {{0, 3}, 2}, {{1, 3}, 2}, {{2, 3}, 2}};
+const PointProjection projections[] = {{{0}, 0},    {{1}, 0},    {{2}, 0},    {{3}, 0},    {{0, 1}, 0},
+                                       {{0, 2}, 1}, {{1, 2}, 1}, {{0, 3}, 2}, {{1, 3}, 2}, {{2, 3}, 2}};
 
 }  // namespace
 
 TEST_CASE("every elementary interval of a block's dimensions and pairs holds its share of the points") {
   for (const std::uint32_t key : {1u, 77u, 0xdeadbeefu})
     for (const std::uint32_t block : {0u, 3u})
-      for (const Projection& p : projections) {
+      for (const PointProjection& p : projections) {
         CAPTURE(key, block, p.dims, p.t);
         CHECK(is_sequence(key, block, p.dims, p.t, 11));
         if (p.t > 0) CHECK_FALSE(is_sequence(key, block, p.dims, p.t - 1, 11));
