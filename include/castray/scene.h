@@ -46,6 +46,20 @@ struct EnvironmentImage {
   bool used() const { return texture >= 0; }
 };
 
+/// A light without size, which no ray meets: it is seen by what it lights. From a point or a spot light
+/// arrives intensity / distance^2, from a directional one, which is infinitely far away, `intensity`: on a
+/// surface that faces it.
+struct DeltaLight {
+  enum class Kind : std::uint8_t { point, spot, directional };
+  Kind kind = Kind::point;
+  Vec3d position;             ///< in scene space; of point and spot lights
+  Vec3d direction{0, 0, -1};  ///< unit, in which light travels; of a spot light: its axis
+  Vec3d intensity;            ///< linear RGB; of point and spot lights over the square of Scene::unit
+  /// Of a spot light: cosines of the half angles beyond which nothing shines, and within which all does.
+  /// Between them, ((cos - cos_outer) / (cos_inner - cos_outer))^2 does.
+  double cos_outer = 0, cos_inner = 1;
+};
+
 /// A scene, an immutable value once loaded.
 ///
 /// Geometry lives in *scene space*: the input is parsed in double, moved so that the middle of its bounds is
@@ -79,6 +93,7 @@ struct Scene {
   Vec3d environment{0, 0, 0};  ///< radiance from every direction that hits nothing; an image's mean over them
   EnvironmentImage environment_image;
   std::vector<std::uint32_t> lights;  ///< the triangles whose material emits, ascending
+  std::vector<DeltaLight> delta_lights;
 
   std::vector<RenderDefault> render_defaults;  ///< in the file's order
 
@@ -95,6 +110,8 @@ struct Scene {
   Vec3d to_scene(const Vec3d& p) const { return (p - center) / unit; }
   Camera to_world(const Camera& camera) const;
   Camera to_scene(const Camera& camera) const;
+  DeltaLight to_world(const DeltaLight& light) const;
+  DeltaLight to_scene(const DeltaLight& light) const;
 };
 
 /// A view, in scene space, that frames all of `scene` in its image size. It looks from the front right above

@@ -103,6 +103,7 @@ void print_lights(const Scene& scene) {
   fmt::print("lights     {} triangles", scene.lights.size());
   for (std::uint16_t m : emitters)
     fmt::print("{} {}", m == *emitters.begin() ? ":" : ",", printable(scene.materials[m].name));
+  if (!scene.delta_lights.empty()) fmt::print("; {} without size", scene.delta_lights.size());
   if (max_component(scene.environment) > 0)
     fmt::print("; environment {}{}{}", text_of(scene.environment), environment_image_text(scene),
                scene.default_environment ? ", as nothing in the scene emits" : "");

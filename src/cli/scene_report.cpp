@@ -45,7 +45,9 @@ std::string lens_json(const Lens& lens) {
 
 }  // namespace
 
-bool is_dark(const Scene& scene) { return scene.lights.empty() && max_component(scene.environment) == 0; }
+bool is_dark(const Scene& scene) {
+  return scene.lights.empty() && scene.delta_lights.empty() && max_component(scene.environment) == 0;
+}
 
 double view_distance(const Camera& camera) { return std::max(0.1, dot(-camera.position, camera.forward)); }
 

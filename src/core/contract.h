@@ -29,7 +29,7 @@ struct PathBlocks {
   CASTRAY_CONTRACT static uint32_t lens_of_light_path(uint32_t vertex) { return lens - vertex; }
   /// At vertex k >= 0 (0 is the camera's hit): direction (2), light point of vertex k + 1 (2).
   CASTRAY_CONTRACT static uint32_t direction(uint32_t vertex) { return 1 + 2 * vertex; }
-  /// At vertex k: direction to an environment that is sampled (2), spare (2).
+  /// At vertex k: direction to an environment that is sampled (2), light without size, spare.
   CASTRAY_CONTRACT static uint32_t environment(uint32_t vertex) { return 0x80000000u + vertex; }
   /// At vertex k: roulette, lobe, light, spare.
   CASTRAY_CONTRACT static uint32_t choice(uint32_t vertex) { return 2 + 2 * vertex; }

@@ -35,7 +35,7 @@ struct FacetList {
   ExactFacets exact;  ///< of the whole scene
 };
 
-/// The facets that can lie between two points of the scene, or before its environment, field by field, padded
+/// The facets that can lie between two points of the scene, or before light from elsewhere, field by field, padded
 /// to a multiple of 16 with copies of the last one.
 struct BlockerList {
   const float* corner[4][3];

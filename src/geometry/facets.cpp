@@ -145,10 +145,10 @@ std::vector<Facet> merge_triangles(const Scene& scene, const std::vector<std::ui
   return facets;
 }
 
-/// Whether some of the scene, or an environment that shines, lies behind the facet as seen from other parts
-/// of the scene.
+/// Whether some of the scene, an environment that shines, or a light without size, which may be anywhere,
+/// lies behind the facet as seen from other parts of the scene.
 bool can_block(const Facet& f, const Scene& scene) {
-  if (max_component(scene.environment) > 0) return true;
+  if (max_component(scene.environment) > 0 || !scene.delta_lights.empty()) return true;
   const Vec3d n{f.normal[0], f.normal[1], f.normal[2]};
   double below = 0, above = 0;
   for (const Vec3f& p : scene.positions) {

@@ -21,7 +21,7 @@ struct Facets {
 
 /// Merges pairs of triangles that form a convex coplanar quad of one material, and drops from the blockers
 /// every facet that has the whole scene on one side of its plane: nothing can be behind it, if there is no
-/// environment.
+/// environment and no light without size.
 Facets make_facets(const Scene& scene);
 
 /// Hits on facets by the reference's test of their triangles, in double: watertight, and right about which of

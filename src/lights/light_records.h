@@ -77,6 +77,19 @@ struct EnvironmentTable {
   const float* columns;    ///< width + 1 of each row
 };
 
+/// A DeltaLight. Point lights are spots of a cone that is all directions.
+struct KernelDelta {
+  float at[3];         ///< its position; of a directional light the unit direction to it
+  float intensity[3];  ///< as DeltaLight::intensity
+  float axis[3];
+  float cos_outer, inverse_width;  ///< 1 / (cos_inner - cos_outer)
+  uint32_t infinite;               ///< 1: directional
+};
+struct DeltaList {
+  const KernelDelta* lights;
+  uint32_t count;
+};
+
 struct MaterialTables;
 struct TriangleTable;
 
@@ -87,6 +100,7 @@ struct LightList {
   uint32_t cut_count;       ///< 0: lights are chosen by power, not by importance
   const LightBounds* cut;   ///< nodes of the tree that together hold every light once
   const LightBounds* tree;  ///< pairs of siblings
+  DeltaList deltas;
   EnvironmentTable environment;
   bool by_solid_angle;  ///< sample rectangles uniformly in solid angle
   bool may_be_covered;  ///< a surface may lie so close in front of a light that segments must start at the

@@ -85,6 +85,11 @@ std::uint64_t scene_hash(const Scene& scene) {
     hash.add(image.texture), hash.add(image.scale), hash.add(image.rotation);
   add_optics(hash, camera);
   hash.add(scene.unit);
+  for (const DeltaLight& light : scene.delta_lights) {
+    hash.add(light.kind);
+    for (const Vec3d& v : {light.position, light.direction, light.intensity}) hash.add(v);
+    hash.add(light.cos_outer), hash.add(light.cos_inner);
+  }
   hash.add(scene.positions);
   hash.add(scene.triangles);
   hash.add(scene.triangle_material);

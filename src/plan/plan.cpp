@@ -32,6 +32,9 @@ bool may_have_light_paths(const SceneNeeds& needs) {
          !needs.bent_normals;
 }
 
+/// The end of a shared suffix on a glossy surface keeps no direction to a light without size.
+bool may_share(const SceneNeeds& needs) { return needs.delta_lights == 0 || !needs.glossy; }
+
 /// spp is ignored: the tree changes low-order bits, and films that are merged or resumed must share one tree.
 BuildQuality build_quality(const Scene& scene, const RenderOptions& options, const Window& window) {
   constexpr double usual_rays_of_a_pixel = 16 * 4;
@@ -71,7 +74,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
       (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
   plan.choose_lights_by_importance = options.lights != LightSampling::area;
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
-  plan.suffixes = options.reuse.automatic ? 64 : options.reuse.suffixes;
+  plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.environment_points = needs.environment && scene.environment_image.used() ? 16 : 0;
   plan.mis = uses_mis(options.mis, scene, std::max(1.0, double(plan.suffixes) / plan.light_points));
@@ -94,6 +97,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   for (const MaterialDescriptor* material : material_descriptors())
     if (material->type != MaterialType::diffuse) skip(materials, material->name);
   skip(needs.environment, "environment");
+  skip(needs.delta_lights > 0, "lights without size");
   skip(needs.lights > 1, "choice among lights");
   skip(plan.light_paths, "paths from lights");
   skip(plan.mis, "multiple importance sampling");

@@ -4,6 +4,7 @@
 
 #include "castray/render_options.h"
 #include "lights/area_lights.h"
+#include "lights/delta_lights.h"
 #include "lights/environment.h"
 #include "lights/light_share.h"
 #include "materials/coverage.h"
@@ -118,6 +119,7 @@ class CastRay {
     const std::array<float, 4> choice = draw(path, PathBlocks::choice(path.vertex));
     radiance += direct_light(x, path, static_cast<double>(choice[2]) + choice[3] * 0x1p-24);
     radiance += environment_light(x, path);
+    radiance += delta_light(x, path);
     const bool clamps = options_.clamp_indirect && path.vertex == 0;
     const Vec3<T> indirect = indirect_light(x, path, T(choice[0]), T(choice[1]));
     return radiance + (clamps ? clamped(indirect, T(*options_.clamp_indirect)) : indirect);
@@ -174,6 +176,22 @@ class CastRay {
     ++path.rays;
     return accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, path.there) ? Vec3<T>()
                                                                                         : radiance;
+  }
+
+  /// The sum over lights without size: f E |cos| V.
+  Vec3<T> delta_light(const Surface<T>& x, Path& path) const {
+    Vec3<T> sum;
+    for (const DeltaLight& light : scene_.delta_lights) {
+      const DeltaSample<T> sample = sample_delta(light, x.p);
+      const Vec3<T> local = x.frame.to_local(sample.wi);
+      if (!x.consistent(sample.wi, local)) continue;
+      const Vec3<T> radiance = x.bsdf.evaluate(x.wo, local) * sample.irradiance * std::abs(local.z);
+      if (!(max_component(radiance) > 0)) continue;
+      ++path.rays;
+      const Ray<T> ray{segments_.origin(x, sample.wi), sample.wi, sample.distance};
+      if (!accel_.occluded(ray, path.there)) sum += radiance;
+    }
+    return sum;
   }
 
   /// Integral over all directions of light that is not direct, estimated in one: f |cos| L / pdf.

@@ -14,8 +14,9 @@ namespace castray {
 // * Emission that a ray hits counts in full if the ray is the camera's or was sampled from a perfectly
 //   specular lobe. Otherwise light sampling accounts for it: it counts 0, or by its MIS weight
 //   (lights/light_share.h).
-// * At each vertex one light point is sampled (AreaLights).
-// * The environment is not sampled as a light: a ray that escapes adds its full radiance.
+// * At each vertex one light point is sampled (AreaLights), one direction to an image of the environment
+//   (Environment), and what lights without size send is added: of all of them, or of one that is sampled.
+// * A constant environment is not sampled as a light: a ray that escapes adds its full radiance.
 // * One direction is sampled from the BSDF; then Russian roulette; then the next vertex.
 
 /// The probability that a path goes on from `vertex`. `brightest` is the largest component of its throughput,

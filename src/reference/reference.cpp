@@ -18,6 +18,7 @@ namespace {
 Scene in_file_coordinates(Scene scene) {
   for (Vec3f& p : scene.positions) p = Vec3f(scene.to_world(Vec3d(p)));
   scene.camera = scene.to_world(scene.camera);
+  for (DeltaLight& light : scene.delta_lights) light = scene.to_world(light);
   scene.center = {};
   scene.unit = 1;
   return scene;

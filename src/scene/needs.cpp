@@ -9,6 +9,7 @@ SceneNeeds needs_of(const Scene& scene) {
   needs.triangles = scene.triangles.size();
   needs.lights = scene.lights.size();
   needs.smooth_normals = !scene.triangle_normals.empty();
+  needs.delta_lights = scene.delta_lights.size();
   needs.environment = max_component(scene.environment) > 0;
   std::vector<bool> used(scene.materials.size());
   for (const std::uint16_t material : scene.triangle_material) used[material] = true;
@@ -18,6 +19,7 @@ SceneNeeds needs_of(const Scene& scene) {
     needs.textures |= m.has_maps_of_values() && !scene.triangle_uvs.empty();
     needs.textures |= m.vertex_colors && !scene.triangle_colors.empty();
     needs.specular |= (traits_of(m) & trait_specular) != 0;
+    needs.glossy |= (traits_of(m) & trait_directional) && (traits_of(m) & trait_shareable);
     needs.bent_normals |= (traits_of(m) & trait_bent) != 0;
     needs.coverage |= m.may_have_holes();
     needs.types.insert(m.type);

@@ -13,9 +13,11 @@ struct SceneNeeds {
   bool textures = false, smooth_normals = false;
   std::set<MaterialType> types;  ///< of materials
   bool specular = false;         ///< a perfectly smooth mirror or glass
-  bool bent_normals = false;     ///< by normal or bump maps
-  bool coverage = false;         ///< surfaces of which only a share is there
+  bool glossy = false;        ///< a surface that reflects other than by Lambert's model, and not as a mirror
+  bool bent_normals = false;  ///< by normal or bump maps
+  bool coverage = false;      ///< surfaces of which only a share is there
   bool environment = false;
+  std::size_t delta_lights = 0;
 };
 
 SceneNeeds needs_of(const Scene& scene);

@@ -269,7 +269,8 @@ Scene SceneBuilder::finish() {
     if (mean_emission(scene, m) == Vec3d()) m.ke = {};
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
-  scene.default_environment = scene.lights.empty() && !environment_given;
+  for (DeltaLight& light : scene.delta_lights) light = scene.to_scene(light);
+  scene.default_environment = scene.lights.empty() && scene.delta_lights.empty() && !environment_given;
   if (scene.default_environment) scene.environment = Vec3d(1);
   return std::move(scene);
 }

@@ -14,6 +14,7 @@
 #include "materials/environment_image.h"
 #include "scene/camera_reader.h"
 #include "scene/json_reader.h"
+#include "scene/lights_reader.h"
 #include "scene/material_reader.h"
 #include "scene/obj_mesh.h"
 #include "scene/scene_builder.h"
@@ -61,6 +62,9 @@ class SceneFileReader {
     if (const JsonNode* node = scene.find("render")) read_render(*node);
     if (const JsonNode* node = scene.find("environment")) read_environment(*node);
     if (const JsonNode* node = scene.find("materials")) read_materials(*node);
+    if (const JsonNode* lights = scene.find("lights"))
+      for (const JsonNode& light : read_array(*lights, "\"lights\""))
+        builder_.scene.delta_lights.push_back(read_delta_light(light));
     const JsonNode* camera = scene.find("camera");
     if (camera) builder_.scene.camera = read_camera(*camera);
     read_meshes(read_array(scene.require("meshes"), "\"meshes\""));
@@ -234,8 +238,9 @@ class SceneFileReader {
 const std::vector<SceneSection>& scene_sections() {
   static const std::vector<SceneSection> sections = [] {
     std::vector<SceneSection> all = {
-        {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "environment"}},
+        {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "lights", "environment"}},
         {"camera", camera_keys},
+        {"light", light_keys},
         {"lens", lens_keys},
         {"image", {"width", "height"}},
         {"environment", {"radiance", "image", "scale", "rotation"}},

@@ -29,6 +29,19 @@ CASTRAY_INLINE void add_gathered_to_direct(const Context& c, Scratch& s) {
     store(s.direct, i, load(s.direct, i) + reflected<features>(s, i));
 }
 
+/// The same for shadow rays of what the camera sees, which have been traced.
+CASTRAY_INLINE void add_unblocked_to_direct(const Context& c, Scratch& s) {
+  if (!clamps_indirect(c.options)) return;
+  const ShadowRays& rays = s.shadow_rays;
+  for (int i = 0; i < rays.count; ++i) {
+    if (rays.blocked[i]) continue;
+    const uint32_t slot = rays.slot[i];
+    s.direct.x[slot] += rays.radiance.x[i];
+    s.direct.y[slot] += rays.radiance.y[i];
+    s.direct.z[slot] += rays.radiance.z[i];
+  }
+}
+
 /// Scales the indirect part of each sample down until no component exceeds most_indirect.
 CASTRAY_INLINE void clamp_indirect(const Context& c, Scratch& s) {
   if (!clamps_indirect(c.options)) return;

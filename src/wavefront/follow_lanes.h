@@ -37,6 +37,10 @@ CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t v
       light_environment<Geometry, features>(c, *current, vertex, s.shadow_rays);
       add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
     }
+    if (c.scene.lights.deltas.count > 0) {
+      light_deltas<Geometry, features>(c, *current, vertex, s.shadow_rays);
+      add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+    }
     if (vertex == 0) keep_direct(c, s);
     scatter<features>(c, *current, vertex, roulette, s.paths);
     if (s.paths.count == 0) return;

@@ -2,6 +2,7 @@
 
 #include "cameras/camera.h"
 #include "lights/covered_lights.h"
+#include "lights/delta_lights.h"
 #include "materials/surface_values.h"
 
 namespace castray {
@@ -51,7 +52,7 @@ std::vector<std::uint32_t> pack_materials(const Scene& scene) {
 }  // namespace
 
 KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads)
-    : coverage(scene), materials(scene), environment(scene) {
+    : coverage(scene), materials(scene), environment(scene), deltas(kernel_deltas(scene.delta_lights)) {
   if (plan.list) {
     facets = make_facets(scene);
     lights = LightTable(scene, facets.facets, plan.choose_lights_by_importance, threads);
@@ -75,6 +76,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   }
   view.lights.by_solid_angle = plan.lights_by_solid_angle;
   view.lights.environment = environment.table();
+  view.lights.deltas = {deltas.data(), static_cast<std::uint32_t>(deltas.size())};
   const std::vector<Vec3d> emission = mean_emissions(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i)
     materials.materials[i].light_density = lights.density(scene.materials[i], emission[i]);

@@ -33,6 +33,7 @@ struct KernelSceneData {
   KernelMaterials materials;
   LightTable lights;
   Environment environment;
+  std::vector<KernelDelta> deltas;
   KernelScene view{};
 };
 

@@ -68,4 +68,12 @@ CASTRAY_STAGE void light_environment(const Context& c, const Vertices& vertices,
       c, vertices, [&](int i) { return vertex_environment_points(c, vertices, i, vertex); }, out);
 }
 
+/// Light sampling: a light without size for each vertex that is on a surface.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void light_deltas(const Context& c, const Vertices& vertices, uint32_t vertex,
+                                ShadowRays& out) {
+  shadow_rays<Geometry, features>(
+      c, vertices, [&](int i) { return vertex_delta_lights(c, vertices, i, vertex); }, out);
+}
+
 }  // namespace castray::CASTRAY_ISA

@@ -1,5 +1,6 @@
 #include "wavefront/light_points_lanes.h"
 
+#include "lights/delta_lights_lanes.h"
 #include "lights/environment_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/shading_lanes.h"
@@ -27,6 +28,15 @@ LightPoint vertex_environment_points(const Context& c, const Vertices& vertices,
   const Float inverse = select(density > Float(0.f), Float(1.f) / density, Float(0.f));
   return {sample.w,   -sample.w, sample.light.radiance * inverse, density, Mask(false), Float(0.f),
           Mask(true), Uint(0u)};
+}
+
+LightPoint vertex_delta_lights(const Context& c, const Vertices& vertices, int i, uint32_t vertex) {
+  const DeltaList& lights = c.scene.lights.deltas;
+  Numbers<3> n{{Float(0.f), Float(0.f), Float(0.f)}};
+  if (lights.count > 1)
+    n = draw<3>(c.options.sobol, sequence_of(vertices.names, i), PathBlocks::environment(vertex));
+  const Mask one_sided = ~has_traits(c.scene, record_of(load(vertices.material + i)), trait_transmits);
+  return sample_delta_light(lights, {load(vertices.p, i), load(vertices.normal, i), one_sided}, n.u[2]);
 }
 
 /// Sums over the tile's points what is seen from their regions.

@@ -14,6 +14,9 @@ LightPoint vertex_light_points(const Context& c, const Vertices& vertices, int i
 /// A direction to the environment, as a light point at infinity, for each of them.
 LightPoint vertex_environment_points(const Context& c, const Vertices& vertices, int i, uint32_t vertex);
 
+/// A light without size for each of them.
+LightPoint vertex_delta_lights(const Context& c, const Vertices& vertices, int i, uint32_t vertex);
+
 /// What a tile knows of the nodes of the light tree's cut.
 struct TileLights {
   alignas(64) float seen[most_light_cut];     ///< as LightRegions::seen, summed over the tile's points

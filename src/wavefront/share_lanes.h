@@ -36,6 +36,15 @@ CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   follow<Geometry, features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
 }
 
+/// Lights without size: each of the vertices x has a shadow ray of its own. `direct`: the camera sees x.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void light_each_by_deltas(Context& c, Scratch& s, const Vertices& x, bool direct) {
+  if (c.scene.lights.deltas.count == 0) return;
+  light_deltas<Geometry, features>(c, x, 0, s.shadow_rays);
+  add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+  if (direct) add_unblocked_to_direct(c, s);
+}
+
 /// Light reflected by vertices x, gathered tile by tile, becomes s.gathered. `direct`: the camera sees x.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) {
@@ -45,6 +54,7 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
     bound_tile(x, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
     find_origins(x, tile * tile_pixels, c.scene.lights.environment.shines, s.suffixes.origins[tile]);
   }
+  light_each_by_deltas<Geometry, features>(c, s, x, direct);
   gather_light<Geometry, features>(c, x, s.boxes, s.suffixes, s.lights, s.visibility, s.gathered);
   start_suffixes<features>(c, x, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);

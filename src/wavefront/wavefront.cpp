@@ -347,7 +347,7 @@ class Wavefront final : public PreparedIntegrator {
       as_pilot([&] { learn_lights(scene, job); });
     if (job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_))
       as_pilot([&] { settle_caustics(job); });
-    if (job.options.reuse.automatic && job.options.reconstruct != Switch::on)
+    if (plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on)
       as_pilot([&] { settle_sharing(job); });
   }
 

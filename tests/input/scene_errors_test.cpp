@@ -86,6 +86,21 @@ const std::vector<Case> cases = {
     in_line("unknown camera key", R"(  "camera": { "fow": 40 },)",
             "s.json:2:15: unknown key 'fow' in \"camera\"; did you mean 'fov'?"),
     {"no meshes", {{"s.json", "{}"}}, "s.json:1:1: the scene needs the key 'meshes'"},
+    // Lights
+    in_line("light without a type", R"(  "lights": [ { "position": [0,0,1] } ],)",
+            "s.json:2:15: a light needs the key 'type'"),
+    in_line(
+        "point light with a direction",
+        R"(  "lights": [ { "type": "point", "position": [0,0,1], "direction": [0,0,1], "intensity": [1,1,1] } ],)",
+        "s.json:2:55: \"direction\" is not of a point light"),
+    in_line(
+        "spot that is wider inside than outside",
+        R"(  "lights": [ { "type": "spot", "position": [0,0,1], "look_at": [0,0,0], "intensity": [1,1,1], "outer_angle": 20, "inner_angle": 20 } ],)",
+        "s.json:2:130: \"inner_angle\" must be at least 0 and less than 20, not 20"),
+    in_line(
+        "spot that looks at itself",
+        R"(  "lights": [ { "type": "spot", "position": [0,0,1], "look_at": [0,0,1], "intensity": [1,1,1] } ],)",
+        "s.json:2:65: the light's direction must not be (0,0,0)"),
     // Camera
     in_line("orthographic camera without height",
             R"(  "camera": { "type": "orthographic", "position": [0,0,1], "look_at": [0,0,0] },)",
