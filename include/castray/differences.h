@@ -11,77 +11,71 @@ inline constexpr int tile_side = 8;
 
 /// One sample of every pixel of a tile, whose paths are shared.
 struct TileSamples {
-  int x = 0, y = 0;          ///< top left pixel in the full image; may lie outside
-  std::uint64_t sample = 0;  ///< its index
-  std::uint64_t valid = 0;   ///< bit 8 row + column: the pixel lies in the full image, its sample is finite
-  std::uint64_t kept = 0;    ///< likewise: of these, it lies in the film's window
+  int x = 0, y = 0;               ///< top left pixel in the full image; may lie outside
+  std::uint64_t sample = 0;       ///< its index
+  std::uint64_t kept = 0;         ///< bit 8 row + column: the sample counts, and lies in the film's window
+  std::uint64_t smooth = 0;       ///< likewise: it is finite, and its pixel, of the full image, sees no edge
   const float* radiance[3] = {};  ///< of pixel 8 row + column
   const float* emitted[3] = {};   ///< the part of it that the camera sees directly, lamps and sky
 };
 
-/// Sums from which differences of neighbouring pixels follow, over the samples in which both are in one tile:
-/// then they share their paths, and most of their noise cancels. The samples of even index and those of odd
-/// index, which must be independent of each other, are kept apart as two halves.
+/// Sums over the samples of smooth pixels: radiance, and the difference to each neighbour over the samples in
+/// which both are in one tile. These share their paths, so that most of their noise cancels. The samples of
+/// even index and those of odd index, which must be independent of each other, are kept apart as two halves.
 ///
 /// All are whole numbers, so that they do not depend on the order of addition. Radiance, here that of
-/// reflected light alone, is rounded to a multiple of 2^-36 of the film's scale, up or down by a hash of
-/// pixel and sample, right on average. Sums hold 2^27 samples as bright as the scale.
+/// reflected light alone, is rounded to a multiple of 2^-36 of the film's scale. Sums hold 2^27 samples as
+/// bright as the scale.
 class DifferenceSums {
  public:
   static constexpr int halves = 2;
-  enum Side { left, right, above, below };
-
-  /// Of one pixel and half.
-  struct alignas(64) Pixel {
-    std::int64_t all[3];        ///< radiance
-    std::int64_t root;          ///< square root of luminance
-    std::int64_t spread_right;  ///< squared difference to that of the neighbour, over `with_right`
-    std::int64_t spread_below;  ///< likewise
-    std::uint32_t count;        ///< samples
-    std::uint32_t with_right;   ///< of them, those whose tile has the neighbour to the right, too
-    std::uint32_t with_below;   ///< likewise
-    std::uint32_t unused;       ///< 0
-  };
-  /// By Side: radiance over the samples whose tile lacks the neighbour on that side.
-  struct Apart {
-    std::int64_t sum[4][3];
-  };
+  /// What is summed of a pixel: its radiance, and how much greater that of a neighbour is.
+  enum Term { own, right, below };
+  static constexpr int terms = 3, channels = 3;
+  static constexpr std::size_t bytes_of_pixel =
+      halves * terms * (channels * sizeof(std::int64_t) + sizeof(std::uint32_t));
 
   DifferenceSums() = default;
-  DifferenceSums(std::size_t pixels, double scale)
-      : kept_(true), scale_(scale), sums_(halves * pixels), apart_(halves * pixels) {}
+  DifferenceSums(int width, int height, double scale);
 
   bool kept() const { return kept_; }
-  const Pixel& at(std::size_t pixel, int half) const { return sums_[place(pixel, half)]; }
-  const Apart& apart_at(std::size_t pixel, int half) const { return apart_[place(pixel, half)]; }
+  int width() const { return width_; }
+  int height() const { return height_; }
 
-  /// Adds row `row` of a tile, as far as it is kept, to consecutive pixels; `first` is where that of column 0
-  /// is or would be.
-  void add(const TileSamples& tile, int row, std::ptrdiff_t first);
-  /// Adds `count` pixels of another, from `from` on, to those from `to` on.
-  void add(std::size_t to, const DifferenceSums& other, std::size_t from, std::size_t count);
-
-  /// Radiance and luminance, of `all`, `apart` and `spread`, are these times the sum.
-  double radiance_unit() const { return scale_ * 0x1p-36; }
-  double spread_unit() const { return scale_ * 0x1p-44; }
-  /// The square root of luminance.
-  double root_unit() const;
-
-  /// As they are in files: the even half, then the odd one.
-  std::vector<Pixel>& sums() { return sums_; }
-  const std::vector<Pixel>& sums() const { return sums_; }
-  std::vector<Apart>& apart() { return apart_; }
-  const std::vector<Apart>& apart() const { return apart_; }
-
- private:
-  std::size_t place(std::size_t pixel, int half) const {
-    return static_cast<std::size_t>(half) * (sums_.size() / halves) + pixel;
+  /// Of the pixels of row y, over their samples.
+  const std::int64_t* sums(int half, int y, Term term, int channel) const {
+    return &sums_[row(half, y) * channels + place(term * channels + channel)];
+  }
+  /// The number of these samples.
+  const std::uint32_t* counts(int half, int y, Term term) const {
+    return &counts_[row(half, y) + place(term)];
   }
 
+  /// Adds tile rows begin <= r < end, as far as they are kept. (x,y): of the tile's first pixel in the
+  /// window, may lie outside.
+  void add(const TileSamples& tile, int begin, int end, int x, int y);
+  /// Adds `count` pixels of another, from (other_x,other_y) on, to those from (x,y) on.
+  void add_row(int x, int y, const DifferenceSums& other, int other_x, int other_y, int count);
+
+  /// Radiance is this times the sum.
+  double radiance_unit() const { return scale_ * 0x1p-36; }
+
+  /// As they are in files: by half, row, term, channel, column; and counts likewise.
+  std::vector<std::int64_t>& all_sums() { return sums_; }
+  const std::vector<std::int64_t>& all_sums() const { return sums_; }
+  std::vector<std::uint32_t>& all_counts() { return counts_; }
+  const std::vector<std::uint32_t>& all_counts() const { return counts_; }
+
+ private:
+  /// Where the counts of a row begin.
+  std::size_t row(int half, int y) const { return place((half * height_ + y) * std::ptrdiff_t{terms}); }
+  std::size_t place(std::ptrdiff_t rows) const { return static_cast<std::size_t>(rows * width_); }
+
   bool kept_ = false;
+  int width_ = 0, height_ = 0;
   double scale_ = 1;
-  std::vector<Pixel> sums_;
-  std::vector<Apart> apart_;
+  std::vector<std::int64_t> sums_;
+  std::vector<std::uint32_t> counts_;
 };
 
 }  // namespace castray

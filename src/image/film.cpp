@@ -104,7 +104,7 @@ void Film::add_splat(int x, int y, const Vec3f& radiance) {
   for (int c = 0; c < 3; ++c) splats_[3 * pixel + static_cast<std::size_t>(c)].add(radiance[c], scale_);
 }
 
-void Film::keep_differences() { differences_ = DifferenceSums(counts_.size(), scale_); }
+void Film::keep_differences() { differences_ = DifferenceSums(width(), height(), scale_); }
 
 void Film::add(const TileSamples& tile, int y0, int y1) {
   for (int y = y0; y < y1; ++y) {
@@ -114,9 +114,8 @@ void Film::add(const TileSamples& tile, int y0, int y1) {
       if (tile.kept >> i & 1)
         add(tile.x + column, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
     }
-    differences_.add(tile, row,
-                     static_cast<std::ptrdiff_t>(y - window_.y0) * width() + (tile.x - window_.x0));
   }
+  differences_.add(tile, y0 - tile.y, y1 - tile.y, tile.x - window_.x0, tile.y - window_.y0);
 }
 
 Vec3d Film::mean(int x, int y) const {
@@ -216,7 +215,8 @@ Film Film::part(const Window& window) const {
     copy_row(sums_, film.sums_, 3, y);
     copy_row(counts_, film.counts_, 1, y);
     if (differences_.kept())
-      film.differences_.add(film.index(window.x0, y), differences_, index(window.x0, y), columns);
+      film.differences_.add_row(0, y - window.y0, differences_, window.x0 - window_.x0, y - window_.y0,
+                                film.width());
     if (!keeps_splats()) continue;
     copy_row(splats_, film.splats_, 3, y);
     copy_row(light_paths_, film.light_paths_, 1, y);
@@ -254,7 +254,8 @@ void Film::add(const Film& other) {
     const std::size_t to = index(w.x0, y), from = other.index(w.x0, y);
     for (std::size_t i = 0; i < 3 * columns; ++i) sums_[3 * to + i] += other.sums_[3 * from + i];
     for (std::size_t i = 0; i < columns; ++i) counts_[to + i] += other.counts_[from + i];
-    if (differences_.kept()) differences_.add(to, other.differences_, from, columns);
+    if (differences_.kept())
+      differences_.add_row(w.x0 - window_.x0, y - window_.y0, other.differences_, 0, y - w.y0, w.width());
     if (!other.keeps_splats()) continue;
     for (std::size_t i = 0; i < 3 * columns; ++i) splats_[3 * to + i] += other.splats_[3 * from + i];
     for (std::size_t i = 0; i < columns; ++i) light_paths_[to + i] += other.light_paths_[from + i];

@@ -20,8 +20,7 @@ namespace castray {
 // then per pixel the number of samples (32 bits); the same, with 64 bits, per block of each replicate; the
 // sums of splats and the numbers of light paths (64 bits), per block after each replicate and per pixel at
 // the end, if the header has "splats"; then the CRC-32 of all before. With differences the first line is
-// "castray film 2", and before the CRC-32 are, per half and pixel, DifferenceSums::Pixel (64 bytes), then
-// likewise DifferenceSums::Apart (96 bytes).
+// "castray film 2", and before the CRC-32 are DifferenceSums::all_sums (64 bits each), then all_counts (32).
 
 static_assert(std::endian::native == std::endian::little, "film files are written as memory holds them");
 
@@ -67,8 +66,8 @@ struct FilmFile {
     }
     append_sums(bytes, film.splats_);
     append(bytes, film.light_paths_);
-    append(bytes, film.differences_.sums());
-    append(bytes, film.differences_.apart());
+    append(bytes, film.differences_.all_sums());
+    append(bytes, film.differences_.all_counts());
     append(bytes, std::array{checksum(bytes)});
     return bytes;
   }
@@ -82,7 +81,7 @@ struct FilmFile {
     data_begin = header_end + 1;
     try {
       Film film = parse_header(json::parse(bytes.substr(magic.size(), header_end - magic.size())));
-      if (bytes.starts_with(magic_of_differences)) film.differences_ = DifferenceSums(0, film.scale_);
+      if (bytes.starts_with(magic_of_differences)) film.differences_ = DifferenceSums(0, 0, film.scale_);
       return film;
     } catch (const json::exception& error) {
       throw InputError({name}, std::string("has a corrupt header: ") + error.what());
@@ -100,10 +99,9 @@ struct FilmFile {
         static_cast<std::size_t>(grid.x1 - grid.x0) * static_cast<std::size_t>(grid.y1 - grid.y0);
     constexpr std::size_t colour_bytes = 3 * sizeof(Film::Sum);
     const std::size_t splat_bytes = film.keeps_splats() ? colour_bytes + 8 : 0;
-    const std::size_t pairs = film.differences_.kept() ? DifferenceSums::halves * pixels : 0;
-    const std::size_t length = pixels * (colour_bytes + 4 + splat_bytes) +
+    const std::size_t difference_bytes = film.differences_.kept() ? DifferenceSums::bytes_of_pixel : 0;
+    const std::size_t length = pixels * (colour_bytes + 4 + splat_bytes + difference_bytes) +
                                film.replicates_.size() * blocks * (colour_bytes + 8 + splat_bytes) +
-                               pairs * (sizeof(DifferenceSums::Pixel) + sizeof(DifferenceSums::Apart)) +
                                sizeof(std::uint32_t);
     if (data.size() != length) fail(data.size() < length ? "is truncated" : "has bytes behind its end");
     std::uint32_t stored;
@@ -124,8 +122,10 @@ struct FilmFile {
       at = read_values(at, film.splats_, 3 * pixels);
       at = read_values(at, film.light_paths_, pixels);
     }
-    at = read_values(at, film.differences_.sums(), pairs);
-    read_values(at, film.differences_.apart(), pairs);
+    if (film.differences_.kept()) film.keep_differences();
+    DifferenceSums& differences = film.differences_;
+    at = read_values(at, differences.all_sums(), differences.all_sums().size());
+    read_values(at, differences.all_counts(), differences.all_counts().size());
     return film;
   }
 

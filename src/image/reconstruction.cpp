@@ -1,124 +1,149 @@
 #include "image/reconstruction.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "core/threads.h"
+#include "image/pair_weights.h"
 
 namespace castray {
 
 namespace {
 
-/// Of its errors, a pixel's mean shares most with its tile: how much its weight is less for that.
-constexpr float weight_of_mean = 0.25f;
-/// The least relative variance of a sample: less is not known of floats.
-constexpr float least_noise = 1e-7f;
-/// The most that a pair weighs more than a mean, so that corrections reach some hundred pixels and no
-/// further.
-constexpr float stiffest = 16384;
+using Term = DifferenceSums::Term;
 
-/// Pairs more noisy than this many times one of their pixels count nothing: they would tell little.
-constexpr float noisiest = 4;
+constexpr int rows_of_a_strip = 32;
 
-PixelPlanes planes(int width, int height) {
-  return {PixelPlane(width, height), PixelPlane(width, height), PixelPlane(width, height)};
-}
+/// The means of a row's pixels, or differences, in three channels.
+struct RowMeans {
+  std::vector<double> channel[3];
+  std::vector<double> per_sum;  ///< the unit over the count, 0 without samples
 
-/// For corrections of the means of one half, as parts of the guide.
-class Equations {
+  explicit RowMeans(int width) : per_sum(static_cast<std::size_t>(width)) {
+    for (auto& values : channel) values.resize(static_cast<std::size_t>(width));
+  }
+
+  void read(const DifferenceSums& sums, int half, int y, Term term) {
+    const std::uint32_t* count = sums.counts(half, y, term);
+    const double unit = sums.radiance_unit();
+    for (std::size_t x = 0; x < per_sum.size(); ++x) per_sum[x] = count[x] > 0 ? unit / count[x] : 0;
+    for (int c = 0; c < 3; ++c) {
+      const std::int64_t* sum = sums.sums(half, y, term, c);
+      double* out = channel[c].data();
+      for (std::size_t x = 0; x < per_sum.size(); ++x) out[x] = static_cast<double>(sum[x]) * per_sum[x];
+    }
+  }
+};
+
+/// The right side of the equations for corrections: what differences say of neighbours, less what means say.
+class RightSide {
  public:
-  PixelCouplings couplings;
-  PixelPlanes b;
+  RightSide(const DifferenceSums& sums, int half, const PixelCouplings& weights)
+      : sums_(sums),
+        half_(half),
+        weights_(weights),
+        here_(sums.width()),
+        next_(sums.width()),
+        difference_(sums.width()),
+        pull_(static_cast<std::size_t>(sums.width())) {}
 
-  Equations(const HalfFilm& data, const HalfFilm& other, int width, int height, int threads)
-      : couplings(width, height), b(planes(width, height)), guide_(other.guide), threads_(threads) {
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x)
-        couplings.screen.row(y)[x] =
-            weight_of_mean * data.count.row(y)[x] / std::max(other.noise.row(y)[x], least_noise);
-    const PixelPlanes right = weigh(data.right, other.right.noise, other.noise, couplings.right, 1, 0);
-    const PixelPlanes below = weigh(data.below, other.below.noise, other.noise, couplings.below, 0, 1);
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (int y = 0; y < height; ++y)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float *to_right = right[c].row(y), *down = below[c].row(y), *up = below[c].row(y - 1);
-        float* sum = b[c].row(y);
-        for (int x = 0; x < width; ++x) sum[x] = (to_right[x - 1] - to_right[x]) + (up[x] - down[x]);
+  /// Rows begin <= y < end of `b`, which are zero.
+  void write(int begin, int end, PixelPlanes& b) {
+    const int first = std::max(begin - 1, 0);
+    next_.read(sums_, half_, first, Term::own);
+    for (int y = first; y < end; ++y) {
+      std::swap(here_, next_);
+      if (y >= begin) pull_right(y, b);
+      if (y + 1 < sums_.height()) {
+        next_.read(sums_, half_, y + 1, Term::own);
+        pull_below(y, y >= begin, y + 1 < end, b);
       }
+    }
   }
 
  private:
-  /// Fills in the weights of pairs, 0 where they are noisier than one of their pixels: at edges, which are
-  /// left as they are. Returns, times the weights, how much more q is than p where both are in one tile than
-  /// it is in all samples, both as parts of the guide.
-  PixelPlanes weigh(const HalfFilm::Pairs& pairs, const PixelPlane& noise, const PixelPlane& pixel_noise,
-                    PixelPlane& weights, int dx, int dy) const {
-    const int w = couplings.width, h = couplings.height;
-    PixelPlanes pulls = planes(w, h);
-#pragma omp parallel for schedule(static) num_threads(threads_)
-    for (int y = 0; y < h - dy; ++y) {
-      const float *screen = couplings.screen.row(y), *count = pairs.count.row(y), *noisy = noise.row(y);
-      float* weight = weights.row(y);
-      const float *own = pixel_noise.row(y), *next = pixel_noise.row(y + dy) + dx;
-      for (int x = 0; x < w - dx; ++x) {
-        const float wanted = std::min(count[x] / std::max(noisy[x], least_noise), stiffest * screen[x]);
-        weight[x] = noisy[x] <= noisiest * std::min(own[x], next[x]) ? wanted : 0;
-      }
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float *here = pairs.here[c].row(y), *there = pairs.there[c].row(y), *p = guide_[c].row(y),
-                    *q = guide_[c].row(y + dy) + dx;
-        float* pull = pulls[c].row(y);
-        for (int x = 0; x < w - dx; ++x) pull[x] = weight[x] * (there[x] / q[x] - here[x] / p[x]);
+  void pull_right(int y, PixelPlanes& b) {
+    difference_.read(sums_, half_, y, Term::right);
+    const float* weight = weights_.right.row(y);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double *difference = difference_.channel[c].data(), *mean = here_.channel[c].data();
+      float* sum = b[c].row(y);
+      for (int x = 0; x + 1 < sums_.width(); ++x) {
+        const float pull = weight[x] * static_cast<float>(difference[x] - (mean[x + 1] - mean[x]));
+        sum[x] -= pull;
+        sum[x + 1] += pull;
       }
     }
-    return pulls;
   }
 
-  const PixelPlanes& guide_;
-  int threads_;
+  /// Of this row and the next, as far as they are wanted.
+  void pull_below(int y, bool this_row, bool next_row, PixelPlanes& b) {
+    difference_.read(sums_, half_, y, Term::below);
+    const float* weight = weights_.below.row(y);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double *difference = difference_.channel[c].data(), *mean = here_.channel[c].data(),
+                   *next = next_.channel[c].data();
+      float *sum = b[c].row(y), *next_sum = b[c].row(y + 1);
+      for (std::size_t x = 0; x < pull_.size(); ++x)
+        pull_[x] = weight[x] * static_cast<float>(difference[x] - (next[x] - mean[x]));
+      for (std::size_t x = 0; this_row && x < pull_.size(); ++x) sum[x] -= pull_[x];
+      for (std::size_t x = 0; next_row && x < pull_.size(); ++x) next_sum[x] += pull_[x];
+    }
+  }
+
+  const DifferenceSums& sums_;
+  int half_;
+  const PixelCouplings& weights_;
+  RowMeans here_, next_, difference_;
+  std::vector<float> pull_;
 };
 
-}  // namespace
-
-PixelPlanes corrections(const HalfFilm& data, const HalfFilm& other, int width, int height, int threads) {
-  Equations e(data, other, width, height, threads);
-  PixelPlanes result = solve_screened_poisson(std::move(e.couplings), std::move(e.b), threads);
+/// Takes out the pairs, and the pixels, of which this half has no samples.
+void keep_known(PixelCouplings& weights, const DifferenceSums& sums, int half, int threads) {
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < height; ++y)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float* guide = other.guide[c].row(y);
-      float* correction = result[c].row(y);
-      for (int x = 0; x < width; ++x) correction[x] *= guide[x];
-    }
-  return result;
-}
-
-namespace {
-
-/// Adds the corrections of one half to the image.
-void correct(Image& image, const Film& film, const HalfFilm& data, const HalfFilm& other, int threads) {
-  const PixelPlanes correction = corrections(data, other, film.width(), film.height(), threads);
-  const Window& window = film.window();
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < film.height(); ++y) {
-    const float *red = correction[0].row(y), *green = correction[1].row(y), *blue = correction[2].row(y),
-                *count = data.count.row(y);
-    for (int x = 0; x < film.width(); ++x) {
-      const auto all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
-      if (all > 0) image.at(x, y) += Vec3f(red[x], green[x], blue[x]) * (count[x] / all);
-    }
+  for (int y = 0; y < sums.height(); ++y) {
+    const auto keep = [&](Term term, float* weight) {
+      const std::uint32_t* count = sums.counts(half, y, term);
+      for (int x = 0; x < sums.width(); ++x) weight[x] = count[x] > 0 ? weight[x] : 0;
+    };
+    keep(Term::own, weights.screen.row(y));
+    keep(Term::right, weights.right.row(y));
+    keep(Term::below, weights.below.row(y));
   }
 }
 
 }  // namespace
+
+PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weights, int threads) {
+  const int w = sums.width(), h = sums.height();
+  PixelCouplings weights = weights_of(sums, half_of_weights, threads);
+  keep_known(weights, sums, half, threads);
+  PixelPlanes b{PixelPlane(w, h), PixelPlane(w, h), PixelPlane(w, h)};
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int y = 0; y < h; y += rows_of_a_strip)
+    RightSide(sums, half, weights).write(y, std::min(y + rows_of_a_strip, h), b);
+  return solve_screened_poisson(std::move(weights), std::move(b), threads);
+}
 
 Image image_of(const Film& film, int threads) {
   Image image = film.image();
-  if (!film.differences().kept()) return image;
+  const DifferenceSums& sums = film.differences();
+  if (!sums.kept()) return image;
   if (threads <= 0) threads = available_threads();
-  const HalfFilm even(film, 0, threads), odd(film, 1, threads);
-  correct(image, film, even, odd, threads);
-  correct(image, film, odd, even, threads);
+  const Window& window = film.window();
+  for (int half = 0; half < DifferenceSums::halves; ++half) {
+    const PixelPlanes correction = corrections(sums, half, 1 - half, threads);
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int y = 0; y < film.height(); ++y) {
+      const std::uint32_t* count = sums.counts(half, y, Term::own);
+      for (int x = 0; x < film.width(); ++x) {
+        const auto all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
+        const Vec3f more(correction[0].row(y)[x], correction[1].row(y)[x], correction[2].row(y)[x]);
+        if (all > 0) image.at(x, y) += more * (static_cast<float>(count[x]) / all);
+      }
+    }
+  }
   return image;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "image/half_film.h"
+#include "castray/film.h"
+#include "image/screened_poisson.h"
 
 namespace castray {
 
@@ -9,6 +10,6 @@ namespace castray {
 ///
 /// Gradient-domain path reusing (Bauszat, Petitjean, Eisemann 2017), a control variate in image space
 /// (Rousselle, Jarosz, Novak 2016). docs/transport.md has the formula.
-PixelPlanes corrections(const HalfFilm& data, const HalfFilm& other, int width, int height, int threads);
+PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weights, int threads);
 
 }  // namespace castray

@@ -34,15 +34,32 @@ void place_pixels(const Context& c, TileResult& result) {
   }
 }
 
+/// The key of pixel (x,y) in one epoch.
+CASTRAY_INLINE Uint key_of_pixel(uint32_t seed, Uint x, Uint y, uint64_t sample) {
+  return with_epoch(hash_combine(hash_combine(Uint(seed), x), y), sample);
+}
+
+CASTRAY_INLINE uint32_t index_of(uint64_t sample) { return (uint32_t)sample & ((1u << index_bits) - 1); }
+
+/// Draws the place in the pixel anew for pixels from number i on that see an edge.
+CASTRAY_INLINE void move_at_edges(const Context& c, int i, Uint x, Uint y, Float (&place)[4]) {
+  const uint32_t edges = (uint32_t)(c.job.edges[i / tile_pixels] >> (i % tile_pixels)) & ((1u << width) - 1);
+  if (edges == 0) return;
+  const Uint key = key_of_pixel(c.job.edge_seed, x, y, c.job.edge_sample);
+  const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index_of(c.job.edge_sample))}, PathBlocks::camera);
+  for (int d = 0; d < 2; ++d) place[d] = select(mask_of_bits(edges), n.u[d], place[d]);
+}
+
 void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
   const KernelCamera& camera = c.scene.camera;
-  const uint32_t index = (uint32_t)c.job.sample & ((1u << index_bits) - 1);
+  const uint32_t index = index_of(c.job.sample);
   paths.count = c.job.tiles * tile_pixels;
   for (int i = 0; i < paths.count; i += width) {
     const Uint entry = Uint((uint32_t)i) + lane_index();
     const Uint x = load(pixels.x + i), y = load(pixels.y + i);
-    const Uint key = with_epoch(hash_combine(hash_combine(Uint(c.options.seed), x), y), c.job.sample);
-    const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
+    const Uint key = key_of_pixel(c.options.seed, x, y, c.job.sample);
+    Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
+    if (c.job.edges) move_at_edges(c, i, x, y, n.u);
     const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));
     const Float py = to_float(y) + (c.options.jitter ? n.u[1] : Float(0.5f));
     const Numbers<2> lens = camera.has_lens ? draw<2>(c.options.sobol, {key, Uint(index)}, PathBlocks::lens)

@@ -52,6 +52,11 @@ struct TileJob {
   int grid_x, grid_y;  ///< of the first tile, in the grid of tiles
   int tiles;
   uint64_t sample;
+  /// By tile, a bit for each pixel: whether its camera ray is that of sample `edge_sample` under `edge_seed`.
+  /// Null: no pixel's.
+  const uint64_t* edges = nullptr;
+  uint64_t edge_sample = 0;
+  uint32_t edge_seed = 0;
 };
 
 inline constexpr int tile_size = 8;

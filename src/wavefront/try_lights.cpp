@@ -8,6 +8,7 @@
 #include "core/sequences.h"
 #include "core/warp.h"
 #include "geometry/ray_arrays.h"
+#include "wavefront/host_rays.h"
 
 namespace castray {
 
@@ -70,11 +71,12 @@ class Batch {
 
   std::vector<Vertex> find_vertices(const Rays& rays, bool from_camera) {
     std::vector<Hit<float>> hits(rays.size());
-    RayArrays(rays).closest([&](const RayBatch& b) { closest(b, from_camera); }, 0, rays.size(), hits.data());
+    RayArrays(rays).closest([&](const RayBatch& b) { closest_hits(kernel_, data_, from_camera, b); }, 0,
+                            rays.size(), hits.data());
     std::vector<Vertex> found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (!hits[i].found()) continue;
-      const auto [normal, material] = surface(hits[i].triangle);
+      const auto [normal, material] = surface_hit(scene_, data_, hits[i].triangle);
       const Vec3f facing = dot(normal, rays[i].direction) < 0 ? normal : -normal;
       found.push_back({rays[i].origin + rays[i].direction * hits[i].t + facing * offset, facing,
                        rays[i].direction, names_[i],
@@ -159,23 +161,6 @@ class Batch {
       names_.push_back(x.path);
     }
     return rays;
-  }
-
-  std::pair<Vec3f, std::uint32_t> surface(std::uint32_t primitive) const {
-    if (!data_.bvh) {
-      const Facet& f = data_.facets.facets[primitive];
-      return {{f.normal[0], f.normal[1], f.normal[2]}, f.material};
-    }
-    const Index3& t = scene_.triangles[primitive];
-    const Vec3d v0(scene_.positions[t[0]]);
-    const Vec3d normal = cross(Vec3d(scene_.positions[t[1]]) - v0, Vec3d(scene_.positions[t[2]]) - v0);
-    return {Vec3f(normalize(normal)), scene_.triangle_material[primitive]};
-  }
-
-  void closest(const RayBatch& rays, bool from_camera) const {
-    if (data_.bvh) return kernel_.bvh_closest(data_.bvh->view(), rays);
-    const FlatList& list = data_.view.geometry.list;
-    kernel_.facets_closest(list.facets, from_camera ? list.camera_slack : list_slack, rays);
   }
 
   void occluded(const ShadowBatch& rays) const {

@@ -15,8 +15,10 @@
 #include "core/sequences.h"
 #include "geometry/build_quality.h"
 #include "wavefront/choose_kernel.h"
+#include "wavefront/edge_emission.h"
 #include "wavefront/kernel_scene.h"
 #include "wavefront/pilot.h"
+#include "wavefront/pixel_edges.h"
 #include "wavefront/try_lights.h"
 
 namespace castray {
@@ -145,10 +147,12 @@ struct TileGrid {
 /// One render of a scene, tile row by tile row.
 class WavefrontRun {
  public:
-  WavefrontRun(const KernelApi& kernel, const KernelScene& scene, const Plan& plan, const Job& job)
+  WavefrontRun(const Scene& scene, const KernelApi& kernel, const KernelSceneData& data, const Plan& plan,
+               const Job& job)
       : window_(job.window),
-        scene_(scene),
+        scene_(data.view),
         differences_(keeps_differences(job, plan)),
+        edge_emission_(scene, kernel, data, window_, job.options),
         options_(kernel_options(job.options, plan, differences_)),
         render_tiles_(kernel.render_tiles[plan.features]),
         trace_light_paths_(options_.light_paths ? kernel.trace_light_paths[plan.features] : nullptr),
@@ -157,8 +161,9 @@ class WavefrontRun {
     if (job.options.camera)
       look_through(scene_, *job.options.camera, window_.full_width, window_.full_height);
     for (int i = 0; i < job.threads; ++i) workplaces_.emplace_back(kernel);
-    if (!job.options.jitter && !scene.camera.has_lens && !scene.geometry.tree.partial.triangles)
+    if (!job.options.jitter && !scene_.camera.has_lens && !scene_.geometry.tree.partial.triangles)
       find_first_hits();
+    if (differences_) edges_ = PixelEdges(scene, kernel, data, window_, job.threads);
   }
 
   /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
@@ -179,6 +184,8 @@ class WavefrontRun {
             TileJob job = grid.job(x, x1, y, s, map);
             x += std::max(job.tiles, 1);
             if (job.tiles == 0) continue;
+            std::uint64_t edges[max_tiles];
+            if (differences_) find_edges(job, edges);
             job.sample = drawn;
             render_tiles_(scene_, options, job, workplace.scratch.get(), result);
             job.sample = s;
@@ -221,6 +228,15 @@ class WavefrontRun {
       }
     }
     table.known = true;
+  }
+
+  /// What pixels see of an edge is the better spread the longer the sequence of their camera rays: it is one
+  /// for both halves, as these pixels have no part in differences.
+  void find_edges(TileJob& job, std::uint64_t (&edges)[max_tiles]) const {
+    for (int k = 0; k < job.tiles; ++k) edges[k] = edges_.of_tile(job.x + k * tile_size, job.y);
+    job.edges = edges;
+    job.edge_sample = job.sample;
+    job.edge_seed = options_.seed;
   }
 
   int lock_of(int y) const { return (y - window_.y0) / tile_size; }
@@ -314,17 +330,30 @@ class WavefrontRun {
     for (int i = 0; i < tile_pixels; ++i) {
       const int x = tile.x + i % tile_size, y = tile.y + i / tile_size;
       const std::uint64_t bit = std::uint64_t{1} << i;
+      const bool smooth = (job.edges[k] & bit) == 0;
       const Vec3f radiance = radiance_of(result, first + i);
       if (x < 0 || x >= window_.full_width || y < 0 || y >= window_.full_height) continue;
-      if (keeps(x, y, job.sample, radiance, map, stats)) tile.kept |= bit;
-      if (is_finite(radiance)) tile.valid |= bit;
+      if (keeps(x, y, job.sample, radiance, map, stats)) {
+        tile.kept |= bit;
+        if (!smooth) settle_emission(x, y, job.sample, first + i, result);
+      }
+      if (smooth && is_finite(radiance)) tile.smooth |= bit;
     }
     return tile;
+  }
+
+  /// Puts a better estimate of what the camera sees of lamps in the place of pixel i's.
+  void settle_emission(int x, int y, std::uint64_t sample, int i, const TileResult& result) const {
+    if (!edge_emission_.known() || !edges_.of_lamp(x, y)) return;
+    const Vec3f seen = edge_emission_.at(x, y, sample);
+    for (int c = 0; c < 3; ++c) result.radiance[c][i] += seen[c] - result.emitted[c][i];
   }
 
   Window window_;
   KernelScene scene_;
   bool differences_;  ///< kept by the film
+  PixelEdges edges_;  ///< if so
+  EdgeEmission edge_emission_;
   KernelOptions options_;
   RenderTiles render_tiles_;
   TraceLightPaths trace_light_paths_;  ///< or null
@@ -338,7 +367,8 @@ class WavefrontRun {
 class Wavefront final : public PreparedIntegrator {
  public:
   Wavefront(const Scene& scene, const Job& job)
-      : plan_(make_plan(scene, job.options, job.window)),
+      : scene_(scene),
+        plan_(make_plan(scene, job.options, job.window)),
         kernel_(choose_kernel(job.options.isa)),
         triangles_(scene.triangles.size()),
         data_(scene, plan_, job.window.full_width, job.window.full_height, job.threads) {
@@ -352,7 +382,7 @@ class Wavefront final : public PreparedIntegrator {
   }
 
   BandWork work(const Job& job) const override {
-    const auto run = std::make_shared<WavefrontRun>(kernel_, data_.view, plan_, job);
+    const auto run = std::make_shared<WavefrontRun>(scene_, kernel_, data_, plan_, job);
     const int top = job.window.y0;
     return {
         tile_size, true, traces_light_paths(job.options, plan_), keeps_differences(job, plan_),
@@ -449,6 +479,7 @@ class Wavefront final : public PreparedIntegrator {
     return fmt::format("{}, build {}", to_string(data_.bvh->stats()), name_of(plan_.build));
   }
 
+  const Scene& scene_;
   Plan plan_;
   const KernelApi& kernel_;
   std::size_t triangles_;

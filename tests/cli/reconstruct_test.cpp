@@ -48,7 +48,7 @@ TEST_CASE("without reconstruction a film has no differences, and an image is the
     return std::filesystem::file_size(folder / "a.film");
   };
   constexpr std::size_t pixels = 48 * 40;
-  CHECK(size_of({"--reconstruct", "auto"}) > 372 * pixels);
+  CHECK(size_of({"--reconstruct", "auto"}) > 220 * pixels);
   for (const Words& plain :
        {Words{}, Words{"--reconstruct", "auto", "--reuse", "off"}, Words{"--reconstruct", "off"}})
     CHECK(size_of(plain) < 53 * pixels + 1000);

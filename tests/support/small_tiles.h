@@ -51,7 +51,7 @@ class TiledFilm : public Film {
       if (x < 0 || x >= w.full_width || y < 0 || y >= w.full_height) continue;
       const Vec3f colour = value(x, y);
       for (int c = 0; c < 3; ++c) radiance[c][static_cast<std::size_t>(i)] = colour[c];
-      tile.valid |= std::uint64_t{1} << i;
+      tile.smooth |= std::uint64_t{1} << i;
       if (x >= w.x0 && x < w.x1 && y >= w.y0 && y < w.y1) tile.kept |= std::uint64_t{1} << i;
     }
     add(tile, std::max(top, w.y0), std::min(top + 8, w.y1));

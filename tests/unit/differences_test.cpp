@@ -74,46 +74,69 @@ TEST_CASE("films with and without differences are not merged") {
   CHECK_THROWS_WITH(without.merge(with), Catch::Contains("differences"));
 }
 
-TEST_CASE("a pixel's sums are those of the samples whose tile has its neighbour") {
+TEST_CASE("differences are summed over the samples whose tile has both pixels, by halves") {
   TiledFilm film(window);
-  double all = 0;
-  std::array<double, 4> apart{};  // by Side
-  std::uint32_t with_right = 0;
+  double own = 0, right = 0, below = 0;
+  std::uint32_t with_right = 0, with_below = 0;
   constexpr int x = 15, y = 12, samples = 40;
   for (std::uint32_t s = 0; s < 2 * samples; s += 2) {  // of the even half
     const auto value = [s](int i, int j) {
-      return Vec3f(static_cast<float>(i + 2 * j + static_cast<int>(s)) / 64);
+      return Vec3f(static_cast<float>((i + 2 * j * j + static_cast<int>(s) * i) % 64) / 64);
     };
     film.add_sample(s, value);
     const Tiles tiles(window, s);
-    const int left = (x + tiles.shift_x) % 8, top = (y + tiles.shift_y) % 8;
-    all += value(x, y).x;
-    if (left == 0) apart[DifferenceSums::left] += value(x, y).x;
-    if (left == 7) apart[DifferenceSums::right] += value(x, y).x;
-    if (top == 0) apart[DifferenceSums::above] += value(x, y).x;
-    if (top == 7) apart[DifferenceSums::below] += value(x, y).x;
-    with_right += left < 7 ? 1 : 0;
+    own += value(x, y).x;
+    if ((x + tiles.shift_x) % 8 < 7) ++with_right, right += value(x + 1, y).x - value(x, y).x;
+    if ((y + tiles.shift_y) % 8 < 7) ++with_below, below += value(x, y + 1).x - value(x, y).x;
   }
-  const std::size_t at = static_cast<std::size_t>((y - window.y0) * window.width() + x - window.x0);
   const DifferenceSums& sums = film.differences();
-  const DifferenceSums::Pixel& p = sums.at(at, 0);
-  CHECK(p.count == samples);
-  CHECK(p.with_right == with_right);
-  CHECK(static_cast<double>(p.all[0]) * sums.radiance_unit() == all);
-  for (const auto side :
-       {DifferenceSums::left, DifferenceSums::right, DifferenceSums::above, DifferenceSums::below})
-    CHECK(static_cast<double>(sums.apart_at(at, 0).sum[side][1]) * sums.radiance_unit() == apart[side]);
-  CHECK(sums.at(at, 1).count == 0);
+  using Term = DifferenceSums::Term;
+  const auto count = [&](int half, Term term) {
+    return sums.counts(half, y - window.y0, term)[x - window.x0];
+  };
+  const auto sum = [&](Term term) {
+    return static_cast<double>(sums.sums(0, y - window.y0, term, 1)[x - window.x0]) * sums.radiance_unit();
+  };
+  CHECK(count(0, Term::own) == samples);
+  CHECK(count(0, Term::right) == with_right);
+  CHECK(count(0, Term::below) == with_below);
+  CHECK(sum(Term::own) == own);
+  CHECK(sum(Term::right) == right);
+  CHECK(sum(Term::below) == below);
+  CHECK(count(1, Term::own) == 0);
 }
 
-TEST_CASE("faint radiance is rounded to units without a bias") {
+TEST_CASE("pixels that see an edge have samples, but no part in differences") {
+  Film film({8, 8, 0, 0, 8, 8}, 1);
+  film.keep_differences();
+  std::array<float, 64> radiance, emitted = {};
+  for (std::size_t i = 0; i < 64; ++i) radiance[i] = static_cast<float>(i);
+  TileSamples tile{.kept = ~std::uint64_t{0}, .smooth = ~(std::uint64_t{1} << (8 * 3 + 5))};
+  for (int c = 0; c < 3; ++c) {
+    tile.radiance[c] = radiance.data();
+    tile.emitted[c] = emitted.data();
+  }
+  film.add(tile, 0, 8);
+  const DifferenceSums& sums = film.differences();
+  using Term = DifferenceSums::Term;
+  CHECK(film.count(5, 3) == 1);
+  CHECK(film.mean(5, 3).x == 29);
+  for (const Term term : {Term::own, Term::right, Term::below}) CHECK(sums.counts(0, 3, term)[5] == 0);
+  CHECK(sums.counts(0, 3, Term::own)[4] == 1);
+  CHECK(sums.counts(0, 3, Term::right)[4] == 0);
+  CHECK(sums.counts(0, 3, Term::right)[3] == 1);
+  CHECK(sums.counts(0, 2, Term::below)[5] == 0);
+  CHECK(sums.sums(0, 2, Term::below, 0)[5] == 0);
+  CHECK(static_cast<double>(sums.sums(0, 2, Term::below, 0)[4]) * sums.radiance_unit() == 8);
+}
+
+TEST_CASE("radiance is summed to the nearest unit") {
   TiledFilm film({8, 8, 0, 0, 8, 8});
-  constexpr int samples = 4000;
-  const float faint = static_cast<float>(0.3 * film.differences().radiance_unit());
-  for (std::uint32_t s = 0; s < samples; ++s) film.add_sample(s, [faint](int, int) { return Vec3f(faint); });
-  double sum = 0;
-  for (std::size_t i = 0; i < 64; ++i)
-    for (int half = 0; half < 2; ++half) sum += static_cast<double>(film.differences().at(i, half).all[2]);
-  const double error = std::sqrt(0.3 * 0.7 * 64 * samples);
-  CHECK(std::abs(sum - 0.3 * 64 * samples) < 5 * error);  // a false alarm in 1.7 million
+  const double unit = film.differences().radiance_unit();
+  for (const double value : {0.4, 0.6, 7.3, 1048576.75}) {
+    const auto before = film.differences().sums(0, 0, DifferenceSums::own, 2)[0];
+    film.add_sample(0, [&](int, int) { return Vec3f(static_cast<float>(value * unit)); });
+    CHECK(film.differences().sums(0, 0, DifferenceSums::own, 2)[0] - before ==
+          std::llround(double{static_cast<float>(value * unit)} / unit));
+  }
 }
