@@ -76,11 +76,12 @@ class Weights {
         for (int y = y0; y < std::min(y0 + block, h_); ++y) {
           write_screen(y, weights.screen.row(y));
           around.add_up(right_, sums_, half_, y, Term::right);
-          write_pairs(y, around, right_.row(y), sums_.counts(half_, y, Term::right), weights.screen.row(y),
-                      weights.right.row(y));
+          write_pairs(y, w_ - 1, around, right_.row(y), sums_.counts(half_, y, Term::right),
+                      weights.screen.row(y), weights.right.row(y));
+          if (y + 1 == h_) continue;
           around.add_up(below_, sums_, half_, y, Term::below);
-          write_pairs(y, around, below_.row(y), sums_.counts(half_, y, Term::below), weights.screen.row(y),
-                      weights.below.row(y));
+          write_pairs(y, w_, around, below_.row(y), sums_.counts(half_, y, Term::below),
+                      weights.screen.row(y), weights.below.row(y));
         }
       }
     }
@@ -155,10 +156,11 @@ class Weights {
     for (int x = 0; x < w_; ++x) screen[x] = count[x] > 0 ? weight_of_mean / block_at(x, y).mean_variance : 0;
   }
 
-  /// The variance of differences: that among 3x3 of them, or how far this one is from their mean.
-  void write_pairs(int y, const Neighbourhood& around, const float* difference, const std::uint32_t* count,
-                   const float* screen, float* weight) const {
-    for (int x = 0; x < w_; ++x) {
+  /// The variance of the differences of a row's first `pairs` pixels, to neighbours in the film: that among
+  /// 3x3 of them, or how far this one is from their mean.
+  void write_pairs(int y, int pairs, const Neighbourhood& around, const float* difference,
+                   const std::uint32_t* count, const float* screen, float* weight) const {
+    for (int x = 0; x < pairs; ++x) {
       const auto at = static_cast<std::size_t>(x);
       const float n = around.sums[0][at];
       if (count[x] == 0 || n < 2) continue;
