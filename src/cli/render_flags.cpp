@@ -95,7 +95,7 @@ constexpr const char* estimator = "Estimator";
 constexpr const char* machine = "Machine";
 constexpr const char* stopping = "Stopping and resuming";
 constexpr const char* output = "Output";
-constexpr const char* view = "View (else the scene's; an .obj gets an automatic one)";
+constexpr const char* view = "View (else the scene's; a mesh alone gets an automatic one)";
 constexpr const char* lighting = "Scene";
 
 const RenderFlag flags[] = {

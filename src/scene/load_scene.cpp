@@ -1,10 +1,11 @@
-#include <optional>
+#include <functional>
 #include <string>
 
 #include "castray/error.h"
 #include "castray/scene.h"
 #include "core/files.h"
 #include "scene/obj_mesh.h"
+#include "scene/ply_file.h"
 #include "scene/scene_file.h"
 
 namespace castray {
@@ -14,15 +15,13 @@ namespace {
 /// The name of a scene that is read from the standard input.
 constexpr const char* nameless = "scene";
 
-/// `text`: the content of a file that cannot be read by its name.
-Scene load_obj(const std::filesystem::path& file, std::optional<std::string_view> text = {}) {
+/// A mesh alone.
+Scene scene_of_mesh(const std::filesystem::path& file, const std::function<ObjFile(WarningList&)>& read) {
   SceneBuilder builder;
   builder.scene.file = file;
   builder.scene.name = file.stem().string();
   ObjMaterials materials(builder);
-  builder.add(make_mesh(text ? parse_obj(*text, file, builder.warnings) : read_obj(file, builder.warnings),
-                        {}, materials),
-              file);
+  builder.add(make_mesh(read(builder.warnings), {}, materials), file);
   Scene scene = builder.finish();
   scene.camera = automatic_camera(scene);
   return scene;
@@ -34,9 +33,15 @@ bool is_json(std::string_view text) {
   return first != text.npos && (text[first] == '{' || text[first] == '/');
 }
 
+Scene parse_any(std::string_view text, const std::filesystem::path& file) {
+  if (is_json(text)) return parse_scene(text, file);
+  const bool is_ply = text.starts_with("ply\n") || text.starts_with("ply\r");
+  return scene_of_mesh(
+      file, [&](WarningList& w) { return is_ply ? parse_ply(text, file, w) : parse_obj(text, file, w); });
+}
+
 Scene load_standard_input() {
-  const std::string text = read_file("/dev/stdin");
-  Scene scene = is_json(text) ? parse_scene(text, "-") : load_obj("-", text);
+  Scene scene = parse_any(read_file("/dev/stdin"), "-");
   scene.name = nameless;
   return scene;
 }
@@ -47,11 +52,13 @@ Scene load_scene(const std::filesystem::path& file) {
   const std::string suffix = suffix_of(file);
   if (file == "-") return load_standard_input();
   if (suffix == ".json") return read_scene_file(file);
-  if (suffix == ".obj") return load_obj(file);
+  if (suffix == ".obj") return scene_of_mesh(file, [&](WarningList& w) { return read_obj(file, w); });
+  if (suffix == ".ply") return scene_of_mesh(file, [&](WarningList& w) { return read_ply(file, w); });
   std::error_code ignored;
-  throw InputError(SourcePlace{file.string()}, std::filesystem::is_directory(file, ignored)
-                                                   ? "is a folder; give a scene file in it, .json or .obj"
-                                                   : "not a scene: its name must end in .json or .obj");
+  throw InputError(SourcePlace{file.string()},
+                   std::filesystem::is_directory(file, ignored)
+                       ? "is a folder; give a scene file in it, .json, .obj or .ply"
+                       : "not a scene: its name must end in .json, .obj or .ply");
 }
 
 }  // namespace castray

@@ -73,8 +73,7 @@ class MaterialReader {
   /// A reflectance may be a metal's, by its name.
   static Vec3d read_color_of(const MaterialKey& key, const JsonNode& node, const std::string& name) {
     const bool is_reflectance = key.range.greatest <= 1;
-    if (node.type != JsonNode::Type::string || !is_reflectance)
-      return read_color(node, name, key.range);
+    if (node.type != JsonNode::Type::string || !is_reflectance) return read_color(node, name, key.range);
     std::vector<std::string_view> names;
     for (const NamedMetal& metal : named_metals()) names.push_back(metal.name);
     return named_metals()[choose(node, "metal", names)].reflectance;

@@ -8,20 +8,15 @@
 #include <optional>
 #include <unordered_map>
 
-#include "castray/image.h"
 #include "core/files.h"
 #include "core/text.h"
 #include "scene/line_reader.h"
-#include "scene/polygon.h"
+#include "scene/mesh_faces.h"
+#include "scene/vertex_colors.h"
 
 namespace castray {
 
 namespace {
-
-/// A corner of a face: positions in the arrays so far, or none.
-struct Corner {
-  std::uint32_t position = Scene::no_index, uv = Scene::no_index, normal = Scene::no_index;
-};
 
 /// What may be odd about a great many lines.
 enum class Oddity : unsigned char {
@@ -42,9 +37,6 @@ constexpr const char* oddities[] = {
 };
 
 class ObjReader {
-  static constexpr std::size_t most_corners =
-      1 << 20;  ///< of a face: bounds what one line can make of memory and time
-
  public:
   ObjReader(std::string_view text, const std::filesystem::path& file, WarningList& warnings)
       : warnings_(warnings), lines_(text, file.string()) {
@@ -80,9 +72,10 @@ class ObjReader {
     // Lines, points, groups, curves: nothing to render.
   }
 
-  void note(Oddity oddity) {
+  void note(Oddity oddity, std::uint64_t times = 1) {
     Met& met = odd_[static_cast<std::size_t>(oddity)];
-    if (met.count++ == 0) met.place = lines_.place();
+    if (met.count == 0) met.place = lines_.place();
+    met.count += times;
   }
 
   Vec3d read_vector(std::string_view key) {
@@ -115,25 +108,13 @@ class ObjReader {
     float greatest = 0;
     for (const Vec3f& color : mesh_.colors) greatest = std::max(greatest, max_component(color));
     const float unit = greatest > 1 ? 255.f : 1.f;
-    const ToneCurve srgb;
-    for (Vec3f& color : mesh_.colors) {
+    for (Vec3f& color : mesh_.colors)
       if (color == no_color) color = Vec3f(unit);
-      for (int i = 0; i < 3; ++i) {
-        const float stored = color[i] / unit;
-        color[i] =
-            std::isfinite(stored) ? static_cast<float>(srgb.decode(std::clamp(stored, 0.f, 1.f))) : 0.f;
-      }
-    }
-    mesh_.triangle_colors = mesh_.triangles;
+    decode_vertex_colors(mesh_, unit);
   }
   static constexpr Vec3f no_color{-1, -1, -1};  ///< of a vertex without one: white
 
-  void read_normal() {
-    const Vec3d normal = read_vector("vn");
-    const double size = length(normal);
-    // What is no direction is stored as (0,0,0), and no triangle refers to it.
-    mesh_.normals.push_back(size > 0 && std::isfinite(size) ? Vec3f(normal / size) : Vec3f{});
-  }
+  void read_normal() { mesh_.normals.push_back(stored_normal(read_vector("vn"))); }
 
   void read_uv() {
     const double u = lines_.required_number("vt");
@@ -223,54 +204,8 @@ class ObjReader {
         lines_.fail(fmt::format("a face of more than {} corners; cut it into smaller ones", most_corners));
     }
     if (corners_.size() < 3) return note(Oddity::few_corners);
-    cuts_.clear();
-    if (corners_.size() == 3) {
-      cuts_.push_back({0, 1, 2});
-    } else {
-      outline_.clear();
-      for (const Corner& corner : corners_) outline_.push_back(mesh_.positions[corner.position]);
-      triangulate(outline_, cuts_);
-    }
-    const std::uint16_t material = current_material();
-    for (const Index3& cut : cuts_)
-      add_triangle(corners_[cut[0]], corners_[cut[1]], corners_[cut[2]], material);
-  }
-
-  bool usable_normal(const Corner& corner) const {
-    return corner.normal != Scene::no_index && mesh_.normals[corner.normal] != Vec3f{};
-  }
-
-  /// Vertex normals say which side is outward, where all three agree against the order of the corners.
-  bool is_wound_against_normals(const Corner& a, const Corner& b, const Corner& c) const {
-    const Vec3d& origin = mesh_.positions[a.position];
-    const Vec3d winding = cross(mesh_.positions[b.position] - origin, mesh_.positions[c.position] - origin);
-    const auto opposes = [&](const Corner& corner) {
-      return dot(Vec3d(mesh_.normals[corner.normal]), winding) < 0;
-    };
-    return opposes(a) && opposes(b) && opposes(c);
-  }
-
-  void add_triangle(const Corner& a, Corner b, Corner c, std::uint16_t material) {
-    const std::size_t before = mesh_.triangles.size();
-    const bool has_normals = usable_normal(a) && usable_normal(b) && usable_normal(c);
-    if (has_normals && is_wound_against_normals(a, b, c)) {
-      std::swap(b, c);
-      note(Oddity::wound_against_normals);
-    }
-    mesh_.triangles.push_back({a.position, b.position, c.position});
-    mesh_.triangle_material.push_back(material);
-    if (has_normals) {
-      mesh_.triangle_normals.resize(before, no_indices);
-      mesh_.triangle_normals.push_back({a.normal, b.normal, c.normal});
-    } else if (!mesh_.triangle_normals.empty()) {
-      mesh_.triangle_normals.push_back(no_indices);
-    }
-    if (a.uv != Scene::no_index && b.uv != Scene::no_index && c.uv != Scene::no_index) {
-      mesh_.triangle_uvs.resize(before, no_indices);
-      mesh_.triangle_uvs.push_back({a.uv, b.uv, c.uv});
-    } else if (!mesh_.triangle_uvs.empty()) {
-      mesh_.triangle_uvs.push_back(no_indices);
-    }
+    if (const std::size_t turned = faces_.add(corners_, current_material()))
+      note(Oddity::wound_against_normals, turned);
   }
 
   void use_material() {
@@ -308,13 +243,12 @@ class ObjReader {
   LineReader lines_;
   ObjFile obj_;
   Mesh& mesh_ = obj_.mesh;
+  MeshFaces faces_{mesh_};
   std::uint32_t smoothing_ = 0;  // the group of the faces at hand
   ObjFile::UsedMaterial current_{{}, false, false};
   std::optional<std::uint16_t> current_index_;
   std::unordered_map<std::string, std::size_t> material_indices_;
   std::vector<Corner> corners_;  // of the face at hand
-  std::vector<Vec3d> outline_;
-  std::vector<Index3> cuts_;
 };
 
 }  // namespace

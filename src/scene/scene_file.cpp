@@ -17,6 +17,7 @@
 #include "scene/lights_reader.h"
 #include "scene/material_reader.h"
 #include "scene/obj_mesh.h"
+#include "scene/ply_file.h"
 #include "scene/scene_builder.h"
 #include "scene/transform.h"
 
@@ -175,13 +176,16 @@ class SceneFileReader {
     return options;
   }
 
-  std::filesystem::path obj_path(const ObjectReader& mesh) const {
-    const JsonNode& obj = mesh.require("obj");
-    std::filesystem::path path = file_.parent_path() / read_string(obj, "\"obj\"");
+  /// Its mesh comes from an OBJ or a PLY file.
+  std::filesystem::path mesh_path(const ObjectReader& mesh) const {
+    const JsonNode* ply = mesh.find("ply");
+    if (ply && mesh.find("obj")) throw InputError(ply->key_place, "give \"obj\" or \"ply\", not both");
+    const JsonNode& node = ply ? *ply : mesh.require("obj");
+    std::filesystem::path path = file_.parent_path() / read_string(node, ply ? "\"ply\"" : "\"obj\"");
     if (is_file(path)) return path;
     std::error_code ignored;
     throw InputError(
-        obj.place,
+        node.place,
         fmt::format("{}: {}",
                     std::filesystem::is_directory(path, ignored) ? "a folder, not a file" : "no such file",
                     printable(path.string())));
@@ -189,20 +193,22 @@ class SceneFileReader {
 
   void read_meshes(const std::vector<JsonNode>& nodes) {
     // A file is read once, and kept until its last use.
-    std::map<std::filesystem::path, ObjUse> objs;
-    std::vector<ObjUse*> uses;
+    std::map<std::filesystem::path, MeshUse> files;
+    std::vector<MeshUse*> uses;
     for (const JsonNode& node : nodes) {
       const ObjectReader mesh(node, "a mesh", keys_of("mesh"));
-      const std::filesystem::path path = obj_path(mesh);
-      uses.push_back(&objs.try_emplace(path).first->second);
+      const std::filesystem::path path = mesh_path(mesh);
+      uses.push_back(&files.try_emplace(path).first->second);
       uses.back()->path = path;
+      uses.back()->read = mesh.find("ply") ? read_ply : read_obj;
       ++uses.back()->left;
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) read_mesh(nodes[i], *uses[i]);
   }
 
-  struct ObjUse {
+  struct MeshUse {
     std::filesystem::path path;
+    ObjFile (*read)(const std::filesystem::path&, WarningList&) = nullptr;
     int left = 0;
     std::optional<ObjFile> file{};
 
@@ -214,17 +220,17 @@ class SceneFileReader {
     }
   };
 
-  void read_mesh(const JsonNode& node, ObjUse& obj) {
+  void read_mesh(const JsonNode& node, MeshUse& use) {
     const ObjectReader reader(node, "a mesh", keys_of("mesh"));
     const MeshOptions options = read_mesh_options(reader);
     Transform transform;
     if (const JsonNode* steps = reader.find("transform"))
       for (const JsonNode& step : read_array(*steps, "\"transform\""))
         transform = transform.then(read_step(step));
-    if (!obj.file) obj.file = read_obj(obj.path, builder_.warnings);
-    Mesh mesh = make_mesh(obj.take(), options, materials_);
+    if (!use.file) use.file = use.read(use.path, builder_.warnings);
+    Mesh mesh = make_mesh(use.take(), options, materials_);
     if (reader.find("transform")) apply(transform, mesh);
-    builder_.add(std::move(mesh), obj.path);
+    builder_.add(std::move(mesh), use.path);
   }
 
   std::filesystem::path file_;
@@ -245,7 +251,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"image", {"width", "height"}},
         {"environment", {"radiance", "image", "scale", "rotation"}},
         {"map", map_keys()},
-        {"mesh", {"obj", "material", "transform", "normals", "crease_angle"}},
+        {"mesh", {"obj", "ply", "material", "transform", "normals", "crease_angle"}},
         {"transform_step", {"scale", "rotate", "translate"}},
     };
     for (const MaterialDescriptor* material : material_descriptors()) {

@@ -103,6 +103,21 @@ void write_objs(const fs::path& folder) {
       "vn 0 0 1\ng x\ns off\no y\nusemtl a\nf 1 2 3 4\nf 1/1 2/2 3/1\nf -1//1 -2//1 \\\n -3//1\nl 1 2\n");
 }
 
+void write_plys(const fs::path& folder) {
+  const std::string vertices = "property float x\nproperty float y\nproperty float z\nproperty uchar red\n";
+  const std::string faces = "property list uchar int vertex_indices\nproperty list uchar float texcoord\n";
+  write_seed(folder, "ascii",
+             "ply\nformat ascii 1.0\ncomment a\nelement vertex 3\n" + vertices + "element face 1\n" + faces +
+                 "end_header\n0 0 0 1\n1 0 0 2\n0 1 0 3\n3 0 1 2 6 0 0 1 0 0 1\n");
+  for (const std::string order : {"little", "big"})
+    write_seed(
+        folder, order,
+        "ply\r\nformat binary_" + order +
+            "_endian 1.0\r\nelement vertex 3\r\nproperty char x\r\nproperty char y\r\nproperty int8 z\r\n"
+            "element tristrips 1\r\nproperty list uchar char vertex_indices\r\nend_header\r\n" +
+            std::string("\0\0\0\1\0\0\0\1\0\4\0\1\2\0", 14));
+}
+
 void write_mtls(const fs::path& folder) {
   copy_files(fs::path(CASTRAY_ROOT) / "models", ".mtl", folder);
   write_seed(folder, "all",
@@ -140,6 +155,7 @@ int main(int argc, char** argv) {
   write_scenes(folder / "scene_json");
   write_objs(folder / "obj");
   write_mtls(folder / "mtl");
+  write_plys(folder / "ply");
   write_images(folder / "image");
   write_films(folder / "film");
   write_arguments(folder / "arguments");

@@ -25,7 +25,9 @@ const std::string whole = "must be a whole number between ";
 
 const std::vector<Case> cases = {
     {{},
-     "say what to do: render, compare, accept, bench, info, merge, submit, convert, completions; see castray --help"},
+     "say what to do: render, serve, compare, accept, bench, info, merge, submit, convert, completions; see "
+     "castray "
+     "--help"},
     {{"rendr"}, "unknown subcommand 'rendr'; did you mean 'render'?"},
     {{"--versio"}, "unknown flag '--versio'; did you mean '--version'?"},
     {{"info", "--jsn", "s.json"}, "unknown flag '--jsn'; see castray info --help"},
@@ -41,7 +43,7 @@ const std::vector<Case> cases = {
     {{"bench", "s.json", "--seeds", "1.5"}, "--seeds '1.5': must be a whole number"},
     {{"bench", "s.json", "--seeds", "x"}, "--seeds 'x': must be a number"},
     {{"bench", "s.json", "--spp", "-4"}, "--spp: " + whole + "1 and 4294967295"},
-    {{"info", "."}, ".: is a folder; give a scene file in it, .json or .obj"},
+    {{"info", "."}, ".: is a folder; give a scene file in it, .json, .obj or .ply"},
     {{"compare", "a.png", "a.png", "-t", "0"}, "--threads '0': " + whole + "1 and 4096"},
     render({"--spp"}, "--spp: needs a value, N"),
     render({"-o"}, "--output: needs a value, FILE"),

@@ -229,6 +229,11 @@ const std::vector<Case> cases = {
             "s.json:4:45: \"crease_angle\" goes with \"normals\": \"smooth\" only"),
     in_mesh("unknown kind of normals", R"({ "obj": "good.obj", "normals": "soft" })",
             "s.json:4:37: unknown \"normals\" 'soft'; known: file, face, smooth"),
+    in_mesh("both OBJ and PLY", R"({ "obj": "good.obj", "ply": "good.ply" })",
+            "s.json:4:26: give \"obj\" or \"ply\", not both"),
+    {"a PLY without faces in a scene",
+     {scene_with_mesh(R"({ "ply": "o.ply" })"), {"o.ply", "ply\nformat ascii 1.0\nend_header\n"}},
+     "o.ply: no faces, so that the scene has no triangle"},
     {"an OBJ without triangles in a scene",
      {scene_with_mesh(R"({ "obj": "o.obj" })"), {"o.obj", three}},
      "o.obj: no faces, so that the scene has no triangle"},
@@ -287,7 +292,7 @@ const std::vector<Case> cases = {
     in_mtl("Kd of two numbers", "newmtl a\nKd 1 1\n", "o.mtl:2:7: 'Kd' needs more numbers"),
     in_mtl("Ke that is not finite", "newmtl a\nKe nan 1 1\n", "o.mtl:2:4: Ke must be finite, not nan"),
     // Files
-    {"another suffix", {{"s.ply", ""}}, "s.ply: not a scene: its name must end in .json or .obj"},
+    {"another suffix", {{"s.stl", ""}}, "s.stl: not a scene: its name must end in .json, .obj or .ply"},
 };
 
 }  // namespace
