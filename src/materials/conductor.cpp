@@ -19,7 +19,8 @@ const MaterialDescriptor& conductor_descriptor() {
                                 roughness_key(),
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
-        return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u);
+        return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
+               (has_narrow_lobe(m) ? trait_focuses : 0u);
       }};
   return descriptor;
 }

@@ -93,6 +93,11 @@ MaterialKey roughness_key() {
 
 bool has_smooth_lobe(const Material& m) { return Ggx<double>{m.alpha}.smooth() && !m.has_alpha_map(); }
 
+bool has_narrow_lobe(const Material& m) {
+  constexpr double narrow_below = 0.1;  // where paths of one's own begin to be worth more than shared ones
+  return !has_smooth_lobe(m) && !m.has_alpha_map() && m.alpha < narrow_below;
+}
+
 bool uses_vertex_colors(const Material& m) {
   const auto is_key = [](const MaterialKey& key) { return key.field == vertex_colors_key().field; };
   return m.vertex_colors && std::ranges::any_of(descriptor_of(m.type).keys, is_key);

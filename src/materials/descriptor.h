@@ -63,6 +63,9 @@ std::uint32_t traits_of(const Material& material);
 /// so: its alpha is at least Ggx::smooth_below.
 bool has_smooth_lobe(const Material& material);
 
+/// Whether GGX lobes of this material are nearly as narrow as a mirror's, though not smooth.
+bool has_narrow_lobe(const Material& material);
+
 /// Whether the colours of vertices count for a material of this type that asks for them.
 bool uses_vertex_colors(const Material& material);
 

@@ -24,7 +24,8 @@ const MaterialDescriptor& dielectric_descriptor() {
                                 roughness_key(),
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
-        return trait_directional | trait_transmits | (has_smooth_lobe(m) || m.ior == 1 ? trait_specular : 0u);
+        const bool smooth = has_smooth_lobe(m) || m.ior == 1;
+        return trait_directional | trait_transmits | (smooth ? trait_specular : trait_focuses);
       }};
   return descriptor;
 }

@@ -15,6 +15,8 @@ enum MaterialTrait : uint32_t {
   trait_emits = 16,
   trait_emits_behind = 32,  ///< on both sides
   trait_bent = 64,          ///< has a normal or bump map
+  trait_focuses = 128,  ///< not smooth, but all that it scatters stays in a narrow lobe, or passes through: what
+                        ///< light it sends to other surfaces are caustics
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as

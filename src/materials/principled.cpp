@@ -59,7 +59,10 @@ const MaterialDescriptor& principled_descriptor() {
             .slot = slot_clearcoat_roughness,
             .text = "Of the coat; its alpha is the square, at least 0.001 [0]."}}),
       .traits = [](const Material& m) -> std::uint32_t {
-        return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u);
+        const bool bare_metal =
+            m.metallic == 1 && !m.map(SurfaceParameter::metallic).used() && m.clearcoat == 0;
+        return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
+               (bare_metal && has_narrow_lobe(m) ? trait_focuses : 0u);
       },
       .finish = [](const LobeAlbedo&, double*) {}};
   return descriptor;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cameras/camera_lanes.h"
-#include "wavefront/surfaces_lanes.h"
+#include "wavefront/shading_lanes.h"
 #include "wavefront/trace_lanes.h"
 
 namespace castray::CASTRAY_ISA {
@@ -16,16 +16,15 @@ struct Emissions {
 struct CameraConnections {
   Paths rays;  ///< slot: the entry of the vertex
   Hits hits;
-  Vertices seen;
   alignas(64) UintArray x, y;           ///< pixel
   alignas(64) FloatArray density;       ///< SeenPoint::pixels_per_solid_angle
-  alignas(64) UintArray vertex;         ///< primitive on which the vertex lies
   VecArray<capacity> splat, by_chance;  ///< as in Splats
 };
 
-/// Starts a camera ray to each vertex in the image, one for each hit. `vertex`: their number in their paths.
+/// Starts a camera ray to each vertex in the image that may reflect light to the camera; mirrors, glass and
+/// surfaces that focus are left to paths from the camera. `vertex`: their number in their paths.
 CASTRAY_STAGE inline void aim_camera(const Context& c, const LightPathJob& job, uint32_t vertex,
-                                     const Vertices& vertices, const Hits& hits, CameraConnections& out) {
+                                     const Vertices& vertices, CameraConnections& out) {
   const KernelCamera& camera = c.scene.camera;
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   Paths& rays = out.rays;
@@ -36,8 +35,11 @@ CASTRAY_STAGE inline void aim_camera(const Context& c, const LightPathJob& job, 
                                                       PathBlocks::lens_of_light_path(vertex))
                                             : Numbers<2>{Float(0.f), Float(0.f)};
     const SeenPoint at = see_point(camera, p, lens.u[0], lens.u[1]);
+    const Mask active = first_lanes(vertices.count - i);
+    const Uint record = records_of(vertices, i);
     const Mask seen =
-        first_lanes(vertices.count - i) & (length_squared(load(vertices.normal, i)) > Float(0.f)) &
+        active & ~has_traits(c.scene, record, trait_transmits) & ~has_traits(c.scene, record, trait_focuses) &
+        (dot(load(vertices.normal, i), p - at.origin) < Float(0.f)) &
         (at.pixels_per_solid_angle > Float(0.f)) & (at.px >= Float(0.f)) & (at.py >= Float(0.f)) &
         (at.px < Float((float)job.width)) & (at.py < Float((float)job.height));
     const int n = rays.count;
@@ -51,42 +53,41 @@ CASTRAY_STAGE inline void aim_camera(const Context& c, const LightPathJob& job, 
     compress_store(out.x + n, seen, to_uint(at.px));
     compress_store(out.y + n, seen, to_uint(at.py));
     compress_store(out.density + n, seen, at.pixels_per_solid_angle);
-    compress_store(out.vertex + n, seen, load(hits.primitive + i));
     rays.count += count(seen);
   }
 }
 
 /// Whether the camera's ray reached the vertex, where ray parameter t is 1: its hit is on the same surface,
-/// or as near as that beyond an edge.
+/// or as near as that, or beyond an edge.
 CASTRAY_INLINE Mask reaches(Uint found, Uint aimed_at, Float t) {
   constexpr float nearly = 1 - 0x1p-18f;
-  return ~(found == Uint(no_hit)) & ((found == aimed_at) | (t >= Float(nearly)));
+  return (found == Uint(no_hit)) | (found == aimed_at) | (t >= Float(nearly));
 }
 
-/// The radiance that the vertices of light paths send to the camera, as a splat each.
+/// The radiance that the vertices of light paths send to the camera, as a splat each. `hits`: where they are.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, uint32_t vertex,
                                   const Vertices& vertices, const Hits& hits, const Emissions& emissions,
-                                  Radiance& unused, CameraConnections& to) {
-  aim_camera(c, job, vertex, vertices, hits, to);
+                                  CameraConnections& to) {
+  aim_camera(c, job, vertex, vertices, to);
   closest<Geometry>(c, to.rays, true, to.hits);
-  surfaces<Geometry, features, true>(c, to.rays, to.hits, false, to.seen, unused);
   for (int i = 0; i < to.rays.count; i += width) {
     const Mask active = first_lanes(to.rays.count - i);
     const Uint entry = select(active, load(to.rays.names.slot + i), Uint(0u));
-    const Shading shading = shading_of<features>(c.scene, to.seen, i);
-    const Vec wi = gather_entries(vertices.wo, entry), local = to_local(shading.frame, wi);
-    const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
-    const Float cos_camera = abs(dot(shading.normal, load(to.seen.wo, i)));
-    const Float cos_light = max(abs(dot(shading.normal, wi)), Float(0x1p-60f));
-    const Vec d = load(to.rays.d, i);
+    const Frame frame = make_frame(gather_entries(vertices.shading_normal, entry));
+    const Bsdf bsdf = gather_bsdf(c.scene, gather(vertices.material, entry),
+                                  gather_entries<features>(vertices.parameters, entry));
+    const Vec d = load(to.rays.d, i), normal = gather_entries(vertices.normal, entry);
+    const Vec wo = -normalize(d), wi = gather_entries(vertices.wo, entry);
+    const BsdfValue value = evaluate(bsdf, to_local(frame, wo), to_local(frame, wi));
+    const Float cos_light = max(abs(dot(normal, wi)), Float(0x1p-60f));
     const Uint slot = gather(vertices.names.slot, entry);
     const Vec reflected =
         gather_entries(vertices.throughput, entry) * value.f_cos * gather(vertices.eta2, entry);
-    const Float weight =
-        gather(emissions.flux, slot) * load(to.density + i) * cos_camera / (cos_light * length_squared(d));
-    const Mask lit = active & reaches(load(to.hits.primitive + i), load(to.vertex + i), load(to.hits.t + i)) &
-                     shading.consistent(wi, local) & (length_squared(shading.normal) > Float(0.f));
+    const Float weight = gather(emissions.flux, slot) * load(to.density + i) * dot(normal, wo) /
+                         (cos_light * length_squared(d));
+    const Mask lit =
+        active & reaches(load(to.hits.primitive + i), gather(hits.primitive, entry), load(to.hits.t + i));
     store(to.splat, i, select(lit, reflected * weight, black()));
     const Mask by_chance = lit & (value.pdf > Float(0.f));
     const Float over_pdf = gather(emissions.radiance, slot) / value.pdf;

@@ -47,7 +47,7 @@ CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t v
     closest<Geometry>(c, s.paths, false, s.hits);
     surfaces<Geometry, features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
     current = &s.vertices;
-    if (chains) take_chain_ends(c.scene, s.paths, *current, *chains);
+    if (chains) take_chain_ends(c, *current, *chains);
   }
 }
 

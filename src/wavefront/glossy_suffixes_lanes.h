@@ -3,19 +3,21 @@
 #include "wavefront/light_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/suffixes_lanes.h"
+#include "wavefront/trace_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
-/// One light point for each glossy suffix. The radiance arrives at y; each pixel applies the BSDF of y
-/// itself.
-template <class Geometry, uint32_t features>
-CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& out) {
+/// A light point for each glossy suffix, as a shadow ray. The radiance arrives at y, in slots `offset` after
+/// those of the suffixes; each pixel applies the BSDF of y, and the MIS weight, itself. `point_of(i)`: those
+/// of vertices i to i + width - 1.
+template <class Geometry, class PointOf>
+CASTRAY_INLINE void shadow_rays_of_glossy(const Context& c, const Vertices& y, PointOf point_of,
+                                          uint32_t offset, LightDirections& directions, ShadowRays& out) {
   out.count = 0;
   const LightList& lights = c.scene.lights;
-  if (lights.count == 0) return;
   for (int i = 0; i < y.count; i += width) {
     const Mask active = first_lanes(y.count - i);
-    const LightPoint point = vertex_light_points(c, y, i, 1, false);
+    const LightPoint point = point_of(i);
     const Vec p = load(y.p, i), normal = load(y.normal, i);
     const LightSegment segment = connect_light(point, p);
     const Vec wi = segment.towards * segment.inverse_distance;
@@ -26,14 +28,38 @@ CASTRAY_STAGE void light_glossy(const Context& c, const Vertices& y, Suffixes& s
     compress_store(out.o, n, lit, traced.o);
     compress_store(out.d, n, lit, traced.d);
     compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);
-    compress_store(out.slot + n, lit, load(y.names.slot + i) + Uint((uint32_t)batch_size));
+    compress_store(out.slot + n, lit, load(y.names.slot + i) + Uint(offset));
     out.count += count(lit);
-    keep_of_suffixes(suffixes.to_light, y, i, wi);
+    keep_of_suffixes(directions.w, y, i, wi);
+    keep_of_suffixes(directions.pdf, y, i, light_density(lights, point, p, wi) / segment.solid_angle);
   }
 }
 
-/// The next ray of each glossy suffix, sampled with wo towards the suffix's own pixel. Light points have all
-/// of the lights' emission at y, and such rays all that arrives from outside.
+/// Light samples for each glossy suffix: a point of one light, and a direction to the environment.
+template <class Geometry>
+CASTRAY_STAGE void light_glossy(Context& c, const Vertices& y, Suffixes& suffixes, ShadowRays& rays,
+                                Radiance& radiance) {
+  if (c.scene.lights.count > 0) {
+    shadow_rays_of_glossy<Geometry>(
+        c, y,
+        [&](int i) {
+          LightPoint point = vertex_light_points(c, y, i, 1, false);
+          point.weight = select(leaves_lamps(c, y, i), black(), point.weight);
+          return point;
+        },
+        batch_size, suffixes.to_light, rays);
+    add_unblocked<Geometry>(c, rays, radiance);
+  }
+  if (c.scene.lights.environment.width > 0) {
+    shadow_rays_of_glossy<Geometry>(
+        c, y, [&](int i) { return vertex_environment_points(c, y, i, 1); }, 2 * batch_size, suffixes.to_sky,
+        rays);
+    add_unblocked<Geometry>(c, rays, radiance);
+  }
+}
+
+/// The next ray of each glossy suffix, sampled with wo towards the suffix's own pixel. Emission that it finds
+/// is kept apart, for MIS.
 template <uint32_t features>
 CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes& suffixes, Paths& out) {
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
@@ -51,13 +77,13 @@ CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes&
     compress_store(out.o, k, going, load(y.p, i));
     compress_store(out.d, k, going, wi);
     compress_store(out.throughput, k, going, one);
-    compress_store(out.arrival + k, going, Float(counts_all));
+    compress_store(out.arrival + k, going, Float(0.f));
     compress_store(out.eta2 + k, going, Float(1.f));
     compress_entries(out.names, k, going, y.names, i);
     compress_store(out.names.light_u + k, going, n.u[2]);
     compress_store(out.names.light_v + k, going, n.u[3]);
     out.count += count(going);
-    keep_of_suffixes(suffixes.onward, y, i, wi);
+    keep_of_suffixes(suffixes.onward.w, y, i, wi);
   }
 }
 

@@ -6,6 +6,14 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// The pdf, per area of the light, with which light sampling at p finds the point in direction wi, for MIS.
+CASTRAY_INLINE Float light_density(const LightList& lights, const LightPoint& point, const Vec& p,
+                                   const Vec& wi) {
+  if (!lights.regions.tree) return point.density;
+  const Float relative = relative_density(lights.regions, p, wi, point.node);
+  return select(point.infinite, point.density, point.density * relative);
+}
+
 /// A light point for each vertex, as a shadow ray with its MIS-weighted radiance. `point_of(i)`: those of
 /// vertices i to i + width - 1.
 template <class Geometry, uint32_t features, class PointOf>
@@ -32,13 +40,7 @@ CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, Poin
       f_cos = load_kd(vertices.parameters, i) * pdf;
     }
     Float share(1.f);
-    if (c.options.mis) {
-      Float density = point.density;
-      if (lights.regions.tree)
-        density =
-            select(point.infinite, density, density * relative_density(lights.regions, p, wi, point.node));
-      share = light_share(density, pdf * segment.solid_angle);
-    }
+    if (c.options.mis) share = light_share(light_density(lights, point, p, wi), pdf * segment.solid_angle);
     const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
     const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;
@@ -54,10 +56,13 @@ CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, Poin
 /// Light sampling: a point of one light for each vertex.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t vertex, ShadowRays& out) {
-  shadow_rays<Geometry, features>(
-      c, vertices,
-      [&](int i) { return vertex_light_points(c, vertices, i, vertex, !(features & feature_materials)); },
-      out);
+  const auto point_of = [&](int i) {
+    LightPoint point = vertex_light_points(c, vertices, i, vertex, !(features & feature_materials));
+    if constexpr (features & feature_materials)
+      if (vertex > 0) point.weight = select(leaves_lamps(c, vertices, i), black(), point.weight);
+    return point;
+  };
+  shadow_rays<Geometry, features>(c, vertices, point_of, out);
 }
 
 /// Light sampling: a direction to the environment for each vertex.

@@ -3,13 +3,14 @@
 #include "wavefront/follow_lanes.h"
 #include "wavefront/scratch_lanes.h"
 
-// Caustics: paths from a light that specular lobes scatter first, and other lobes later. Paths from the
-// camera find them by chance only, when a specular lobe sends them to a light. So where the camera sees
-// another lobe directly this class of paths is given wholly to paths from lights, whose vertices after the
-// first chain of specular ones are each connected to the camera (Arvo 1986; Veach 1997, chapter 10, with one
-// light subpath technique for the class); paths from the camera leave out what they find of it. Paths that
-// begin with a specular lobe at the camera, and light from outside the scene, stay with the paths from the
-// camera.
+// Caustics: paths from a light that mirrors, glass or other surfaces that focus scatter first, and others
+// later. A scattering focuses if it is that of a perfectly smooth lobe, or on a surface with trait_focuses.
+// Paths from the camera find them by chance only, when a narrow lobe sends them to a light. So where the
+// camera sees a scattering that does not focus this class of paths is given wholly to paths from lights,
+// whose vertices after the first chain of focusing ones are each connected to the camera (Arvo 1986; Veach
+// 1997, chapter 10, with one light subpath technique for the class); paths from the camera leave out what
+// they find of it. Paths that begin with a focusing scattering at the camera, and light from outside the
+// scene, stay with the paths from the camera.
 
 namespace castray::CASTRAY_ISA {
 
@@ -75,7 +76,7 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
     surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
     if (vertex > 1) {
       CameraConnections& to = s.to_camera;
-      connect_camera<Geometry, features>(c, job, vertex, s.vertices, s.hits, s.light_paths, s.radiance, to);
+      connect_camera<Geometry, features>(c, job, vertex, s.vertices, s.hits, s.light_paths, to);
       sink.add(sink.self, {to.rays.count,
                            to.x,
                            to.y,
@@ -83,7 +84,7 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
                            {to.by_chance.x, to.by_chance.y, to.by_chance.z}});
     }
     scatter<features>(c, s.vertices, vertex, first_roulette_of_suffixes, s.paths,
-                      vertex == 1 ? Transport::from_light_specular : Transport::from_light);
+                      vertex == 1 ? Transport::from_light_caustic : Transport::from_light);
   }
   return c.rays;
 }

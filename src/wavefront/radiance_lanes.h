@@ -5,14 +5,15 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Radiance sums by slot. Slots of pixels come first, then those of suffixes, then those of light samples
-/// at glossy suffixes.
+/// Radiance sums by slot. Slots of pixels come first, then those of suffixes, then those of light points and
+/// of samples of the environment at glossy suffixes.
 struct Radiance {
-  alignas(64) float x[3 * batch_size], y[3 * batch_size], z[3 * batch_size];
+  static constexpr int slots = 4 * batch_size;
+  alignas(64) float x[slots], y[slots], z[slots];
 
   CASTRAY_INLINE void clear() { __builtin_memset(this, 0, sizeof *this); }
   CASTRAY_INLINE void clear_suffixes() {
-    for (int slot = batch_size; slot < 3 * batch_size; ++slot) x[slot] = y[slot] = z[slot] = 0;
+    for (int slot = batch_size; slot < slots; ++slot) x[slot] = y[slot] = z[slot] = 0;
   }
   CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
 

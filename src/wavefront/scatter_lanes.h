@@ -9,7 +9,7 @@ namespace castray::CASTRAY_ISA {
 enum class Transport : uint8_t {
   from_camera,
   from_light,
-  from_light_specular  ///< by specular lobes alone
+  from_light_caustic  ///< by specular lobes, and surfaces that focus, alone
 };
 
 /// Survival probability of paths at `vertex`. Even a fixed one is capped after many vertices, so that
@@ -25,19 +25,21 @@ CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uin
   return vertex < first_roulette ? Float(1.f) : min(brightest, Float(capped ? highest : 1.f));
 }
 
-/// Paths::arrival of the rays that specular lobes send on from vertices i to i + width - 1. What the camera
-/// itself sees decides which caustics are left to light paths.
-CASTRAY_INLINE Float arrival_after_specular(const Context& c, const Vertices& vertices, int i,
-                                            uint32_t vertex, Mask specular) {
-  if (!c.left_to_light_paths) return Float(counts_all);
+/// Paths::arrival of the rays that vertices i to i + width - 1 send on with this pdf. `focuses`: by
+/// scatterings that do. What the camera itself sees decides which caustics are left to light paths.
+CASTRAY_INLINE Float arrival_for_mis(const Context& c, const Vertices& vertices, int i, uint32_t vertex,
+                                     Mask focuses, const BsdfSample& s) {
+  const Float arrival = select(s.specular, Float(counts_all), c.options.mis ? s.pdf : Float(0.f));
+  if (!c.left_to_light_paths) return arrival;
+  const Mask active = first_lanes(vertices.count - i);
   if (vertex > 0) {
-    const Mask left = gather(c.left_to_light_paths, load(vertices.names.slot + i)) == Uint(1u);
-    return select(left, Float(counts_outside), Float(counts_all));
+    const Uint slot = select(active, load(vertices.names.slot + i), Uint(0u));
+    const Mask left = focuses & (gather(c.left_to_light_paths, slot) == Uint(1u));
+    return select(left, -arrival, arrival);
   }
-  uint32_t seen_by_mirror = bits(specular & first_lanes(vertices.count - i));
-  for (; seen_by_mirror; seen_by_mirror &= seen_by_mirror - 1)
-    c.left_to_light_paths[vertices.names.slot[i + __builtin_ctz(seen_by_mirror)]] = 0;
-  return Float(counts_all);
+  for (uint32_t seen = bits(focuses & active); seen; seen &= seen - 1)
+    c.left_to_light_paths[vertices.names.slot[i + __builtin_ctz(seen)]] = 0;
+  return arrival;
 }
 
 /// What smooth normals change in the throughput of a path from a light, in scattering from wo to wi: seen
@@ -68,12 +70,12 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
       const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
       wi = to_world(shading.frame, s.wi);
       throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
-      arrival = select(s.specular, arrival_after_specular(c, vertices, i, vertex, s.specular),
-                       c.options.mis ? s.pdf : Float(0.f));
+      const Mask focuses = s.specular | has_traits(c.scene, records_of(vertices, i), trait_focuses);
+      arrival = arrival_for_mis(c, vertices, i, vertex, focuses, s);
       if constexpr (features & feature_detail)
         if (transport != Transport::from_camera)
           throughput = throughput * shading_normal_factor(shading, load(vertices.wo, i), wi, s.wi);
-      if (transport == Transport::from_light_specular) throughput = select(s.specular, throughput, black());
+      if (transport == Transport::from_light_caustic) throughput = select(focuses, throughput, black());
       eta2 = load(vertices.eta2 + i) * s.eta2;
       brightest = max_component(throughput) * eta2;
       o = leave(vertices, i, wi);

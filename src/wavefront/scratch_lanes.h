@@ -14,7 +14,7 @@ struct Scratch {
   Hits hits;
   Vertices camera, vertices, glossy;
   Chains chains;
-  alignas(64) uint32_t left_to_light_paths[3 * batch_size];  ///< see Context
+  alignas(64) uint32_t left_to_light_paths[Radiance::slots];  ///< see Context
   CameraConnections to_camera;
   Emissions light_paths;
   ShadowRays shadow_rays;

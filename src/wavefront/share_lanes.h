@@ -18,8 +18,9 @@
 // found by suffixes and by light points, so MIS weights it.
 //
 // Diffuse and rough y_j are shared. Mirrors and glass are not: there suffixes go on as private paths of
-// their own pixels. Where the camera sees mirrors or glass, x_i is the first vertex behind them that is
-// neither; these x_i share among themselves, as they lie elsewhere than those that the camera sees.
+// their own pixels. Where the camera sees a surface that does not gather (see gathers), x_i is the first
+// vertex of the pixel's own path on one that does; these x_i share among themselves, as they lie elsewhere
+// than those that the camera sees.
 
 namespace castray::CASTRAY_ISA {
 
@@ -28,11 +29,11 @@ namespace castray::CASTRAY_ISA {
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   if (s.glossy.count == 0 || !may_have_edges(c.options, 3)) return;
-  light_glossy<Geometry, features>(c, s.glossy, s.suffixes, s.shadow_rays);
-  add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+  light_glossy<Geometry>(c, s.glossy, s.suffixes, s.shadow_rays, s.radiance);
   scatter_glossy<features>(c, s.glossy, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);
-  surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+  surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+  keep_found_light(c, features & feature_detail, s.paths, s.hits, s.vertices, s.suffixes);
   follow<Geometry, features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
 }
 
@@ -76,26 +77,29 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
 
 CASTRAY_INLINE void leave_suffixes_to_light_paths(const Context& c, uint32_t left) {
   if (!c.left_to_light_paths) return;
-  for (int slot = batch_size; slot < 3 * batch_size; ++slot) c.left_to_light_paths[slot] = left;
+  for (int slot = batch_size; slot < Radiance::slots; ++slot) c.left_to_light_paths[slot] = left;
 }
 
-/// Follows the camera's paths on mirrors and glass, and gathers where their specular chains end. With a
-/// limited depth they would not all have the same depth left, and stay private.
+/// Follows the camera's paths on mirrors, glass and polished metal, and gathers where these chains end. With
+/// a limited depth they would not all have the same depth left, and stay private.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void share_chains(Context& c, Scratch& s) {
-  split_unshareable(c.scene, s.camera, s.vertices);
+  split_chains(c.scene, s.camera, s.vertices);
   if (s.vertices.count == 0) return;
-  start_chains(s.camera, s.chains);
+  start_chains(c, s.camera, s.chains);
   follow<Geometry, features>(c, s, s.vertices, 0, first_roulette_vertex,
                              c.options.max_depth == 0 ? &s.chains : nullptr);
-  if (!s.chains.any) return;
-  leave_suffixes_to_light_paths(c, 0);
-  gather_all<Geometry, features>(c, s, s.chains.ends, false);
+  for (uint32_t left = 0; left < 2; ++left) {
+    ChainEnds& ends = s.chains.ends[left];
+    if (!ends.any) continue;
+    leave_suffixes_to_light_paths(c, left);
+    gather_all<Geometry, features>(c, s, ends.vertices, false);
+    for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
+      store(s.radiance, i,
+            fma_vec(load(ends.vertices.throughput, i), load(s.gathered.sum, i), load(s.radiance, i)));
+    s.radiance.clear_suffixes();
+  }
   leave_suffixes_to_light_paths(c, 1);
-  for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
-    store(s.radiance, i,
-          fma_vec(load(s.chains.ends.throughput, i), load(s.gathered.sum, i), load(s.radiance, i)));
-  s.radiance.clear_suffixes();
 }
 
 /// Light reflected by what the camera sees, shared by the pixels of each tile.

@@ -50,6 +50,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
       const int first = tile * tile_pixels + (int)j, k = out.count;
       store(suffixes.origin + first, entry);
       store(suffixes.landed + first, Uint(0u));
+      if constexpr (features & feature_materials) store(suffixes.found, first, black());
       store(suffixes.weight, first, weight * Float(stratum_of(c, origins)));
       compress_store(out.o, k, going, gather_entries(x.p, entry));
       compress_store(out.d, k, going, wi);

@@ -4,6 +4,12 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// Directions from the ends y of glossy suffixes to light, by number of the suffix.
+struct LightDirections {
+  VecArray<batch_size> w;             ///< unit vectors
+  alignas(64) float pdf[batch_size];  ///< with which light sampling at y finds it, per solid angle
+};
+
 /// The suffixes of a job: suffix j of tile t is number 64 t + j, and has slot batch_size + its number.
 struct Suffixes {
   Origins origins[max_tiles];               ///< by tile
@@ -16,8 +22,10 @@ struct Suffixes {
   alignas(64) FloatArray light_density;  ///< pdf of y by light sampling, per area
   alignas(64) UintArray glossy;          ///< 1: y has a rough lobe, and reflects something else to each pixel
 
-  // By number, of those with glossy y; unit directions:
-  VecArray<batch_size> to_light, onward;  ///< to y's light point, and of the next segment
+  // By number, of those with glossy y:
+  LightDirections to_light, to_sky;  ///< to y's light point, and to its sample of the environment
+  LightDirections onward;            ///< of the next segment
+  VecArray<batch_size> found;  ///< emission, or image of the environment, where that ends; 0 without MIS
 };
 
 /// Points per suffix: 1 over the expected number of suffixes that start at one.
@@ -35,6 +43,11 @@ CASTRAY_INLINE void keep_of_suffixes(VecArray<batch_size>& to, const Vertices& y
   }
 }
 
+/// The same of numbers.
+CASTRAY_INLINE void keep_of_suffixes(float* to, const Vertices& y, int i, Float v) {
+  for (int l = 0; l < width && i + l < y.count; ++l) to[y.names.slot[i + l] - batch_size] = lane(v, l);
+}
+
 /// Fills in emission, light_density and landed for the vertices y. `emission_varies`: vertices carry
 /// their emission; otherwise it is their material's.
 void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes);
@@ -44,12 +57,17 @@ void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes
 void scale_light_density(const Context& c, int rays, const Hits& hits, const TileLights* lights,
                          Suffixes& suffixes);
 
+/// Fills in `found`, and the pdf of `onward`, for the next segments `rays` of glossy suffixes, each of which
+/// ends in the vertex z of its entry or escapes. `emission_varies` as above.
+void keep_found_light(const Context& c, bool emission_varies, const Paths& rays, const Hits& hits,
+                      const Vertices& z, Suffixes& suffixes);
+
 /// Copies vertices y with a rough lobe to `glossy`, all others to `others`, where those on mirrors and
 /// glass become vertices of private paths. `x`: where suffixes started.
 void split_suffixes(const KernelScene& scene, const Vertices& x, Suffixes& suffixes, Vertices& glossy,
                     Vertices& others);
 
-/// Moves the camera's vertices on mirrors and glass from `camera` to `out`.
-void split_unshareable(const KernelScene& scene, Vertices& camera, Vertices& out);
+/// Moves the camera's vertices on surfaces that do not gather from `camera` to `out`.
+void split_chains(const KernelScene& scene, Vertices& camera, Vertices& out);
 
 }  // namespace castray::CASTRAY_ISA

@@ -14,7 +14,7 @@ namespace castray::CASTRAY_ISA {
 /// MIS weight of light found by BSDF sampling with pdf `arrival`, where light sampling has pdf
 /// `light_pdf`, both per solid angle. See Paths::arrival.
 CASTRAY_INLINE Float found_weight(Float arrival, Float light_pdf) {
-  return select(arrival >= Float(counts_outside), Float(1.f), bsdf_share(light_pdf, arrival));
+  return select(arrival >= Float(counts_all), Float(1.f), bsdf_share(light_pdf, arrival));
 }
 
 /// MIS-weighted emission of surfaces hit at `distance`; `cosine` is of the ray and the normal. For
@@ -66,9 +66,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       resolve_values(scene, scene.geometry.tree.triangles, material, place, parameters.value);
     const Float arrival = load(paths.arrival + i);
     if (see_emission) {
-      Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
-      if constexpr (features & feature_materials)
-        counts = counts & ((arrival >= Float(counts_all)) | (arrival < Float(counts_outside)));
+      const Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
       if (any(counts)) {
         const LightRegions& regions = scene.lights.regions;
         Float relative(1.f);
@@ -80,7 +78,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       }
     }
     radiance.add(paths.names.slot + i, active & ~hit,
-                 throughput * escaped_radiance(scene.lights.environment, d, arrival));
+                 throughput * escaped_radiance(scene.lights.environment, d, abs(arrival)));
     const Mask kept = keep_misses ? active : hit;
     const int n = out.count;
     if constexpr (features & feature_materials) {

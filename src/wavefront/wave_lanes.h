@@ -32,16 +32,12 @@ CASTRAY_INLINE Sequence sequence_of(const PathNames& names, int i) {
 /// Paths::arrival of rays whose emission has MIS weight 1: light sampling cannot find it.
 inline constexpr float counts_all = 0x1p126f;
 
-/// Paths::arrival of rays whose emission, if they hit some, light paths bring; what comes from outside the
-/// scene has MIS weight 1.
-inline constexpr float counts_outside = 0x1p125f;
-
 /// Rays with the state of their paths. Directions are unit vectors, except the camera's.
 struct Paths {
   int count = 0;
   VecArray<capacity> o, d, throughput;
-  alignas(64) FloatArray arrival;  ///< pdf of the direction, for MIS; counts_all or counts_outside; or 0:
-                                   ///< emission does not count
+  alignas(64) FloatArray arrival;  ///< pdf of the direction, for MIS, or counts_all; or 0: emission does not
+                                   ///< count; negative: light paths bring that of lamps
   alignas(64) FloatArray eta2;     ///< product of eta^2 over refractions, for roulette
   PathNames names;
 };

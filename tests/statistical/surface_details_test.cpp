@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "box_scenes.h"
 #include "castray_blocks.h"
 #include "integrators.h"
 #include "materials/texture.h"
@@ -130,10 +131,11 @@ TEST_CASE("the wavefront agrees with castRay on numbers by image", "[statistical
                 m = {.name = "coat", .type = MaterialType::microfacet, .ks = Vec3d(0.6), .alpha = 1};
                 put_image(s, m, SurfaceParameter::roughness, 0.3, 1);
               }));
-  check_scene("glass's alpha", box_with([](Scene& s, Material& m) {
-                m = {.name = "glass", .type = MaterialType::dielectric, .alpha = 1};
-                put_image(s, m, SurfaceParameter::alpha, 0.2, 0.6);
-              }));
+  const Scene glass = box_with([](Scene& s, Material& m) {
+    m = {.name = "glass", .type = MaterialType::dielectric, .alpha = 1};
+    put_image(s, m, SurfaceParameter::alpha, 0.2, 0.6);
+  });
+  check_scene("glass's alpha", with_larger_lamps(glass, 3));
   check_scene("clear coat, sheen and roughness", box_with([](Scene& s, Material& m) {
                 m = {.name = "paint",
                      .type = MaterialType::principled,

@@ -10,27 +10,6 @@ using namespace castray::test;
 
 // The wavefront integrator, in all its forms, against castRay in double precision.
 
-namespace {
-
-/// Its lamps have sides `times` as long and as much less radiance, lower under the ceiling: what mirrors show
-/// of them is found often enough by chance for a z-test.
-Scene with_larger_lamps(Scene scene, float times) {
-  Vec3f middle;
-  for (const std::uint32_t light : scene.lights)
-    for (const std::uint32_t corner : scene.triangles[light])
-      middle += scene.positions[corner] / (3.f * static_cast<float>(scene.lights.size()));
-  for (const std::uint32_t light : scene.lights)
-    for (std::uint32_t& corner : scene.triangles[light]) {
-      const Vec3f p = middle + (scene.positions[corner] - middle) * times - Vec3f(0, 0.05f, 0);
-      corner = static_cast<std::uint32_t>(scene.positions.size());
-      scene.positions.push_back(p);
-    }
-  for (Material& m : scene.materials) m.ke = m.ke / double(times * times);
-  return scene;
-}
-
-}  // namespace
-
 TEST_CASE("the wavefront agrees with castRay on the standard scenes", "[statistical]") {
   for (const char* name : {"cornell_box", "cornell_conductor", "cornell_microfacet", "cornell_lights",
                            "cornell_obj", "one_triangle"})
@@ -61,10 +40,24 @@ TEST_CASE("mirrors and glass agree with castRay, whether their caustics come fro
       }
   };
   check("mirror", [](Material& m) { m.alpha = 0; });
+  check("near mirror", [](Material& m) { m.alpha = 0.03; });
+  check("principled metal", [](Material& m) {
+    m.type = MaterialType::principled, m.kd = {.9, .6, .3}, m.metallic = 1, m.alpha = 0.05;
+  });
   check("glass", [](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0; });
+  check("rough glass", [](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.2; });
   check("varnish", [](Material& m) {
     m.type = MaterialType::microfacet, m.alpha = 0, m.kd = {.6, .3, .1}, m.ks = {.05, .05, .05};
   });
+}
+
+TEST_CASE("paths from lights have castRay's mean where the camera sees a caustic's surface edge-on",
+          "[statistical]") {
+  const Scene scene = standard_scene("kinds/near_mirror");  // the cube's top is at the height of the camera
+  RenderOptions options = wavefront_options(8);
+  options.caustics = Switch::on;
+  options.reuse = {false, 8, 8, 64};
+  Expected(scene).check("cube seen edge-on", scene, options);
 }
 
 TEST_CASE("paths from lights have castRay's mean at each depth, with two sides and fixed roulette",
@@ -84,22 +77,42 @@ TEST_CASE("paths from lights have castRay's mean at each depth, with two sides a
   Expected(scene).check("fixed roulette", scene, options);
 }
 
+namespace {
+
+/// Over the pixels' mean squares, the sum of their variances over 8 seeds.
+double relative_variance(const Scene& scene, RenderOptions options) {
+  std::vector<Mean> pixels(side * side);
+  for (options.seed = 0; options.seed < 8; ++options.seed) {
+    const std::vector<Vec3f> image = render(scene, options).film.image().pixels;
+    for (std::size_t i = 0; i < image.size(); ++i) pixels[i].add(luminance(Vec3d(image[i])));
+  }
+  double sum = 0;
+  for (const Mean& pixel : pixels) sum += pixel.variance() / (pixel.mean() * pixel.mean() + 0.01);
+  return sum;
+}
+
+}  // namespace
+
 TEST_CASE("paths from lights take nine tenths of the relative variance of a lamp in a bulb",
           "[statistical]") {
   const Scene scene = standard_scene("kinds/lamp_in_bulb");
-  const auto variance_of = [&](Switch caustics) {
-    std::vector<Mean> pixels(side * side);
-    RenderOptions options = wavefront_options(16);
-    options.caustics = caustics;
-    for (options.seed = 0; options.seed < 8; ++options.seed) {
-      const std::vector<Vec3f> image = render(scene, options).film.image().pixels;
-      for (std::size_t i = 0; i < image.size(); ++i) pixels[i].add(luminance(Vec3d(image[i])));
-    }
-    double sum = 0;
-    for (const Mean& pixel : pixels) sum += pixel.variance() / (pixel.mean() * pixel.mean() + 0.01);
-    return sum;
-  };
-  CHECK(variance_of(Switch::on) < 0.1 * variance_of(Switch::off));
+  RenderOptions by_light = wavefront_options(16), by_chance = by_light;
+  by_light.caustics = Switch::on;
+  by_chance.caustics = Switch::off;
+  CHECK(relative_variance(scene, by_light) < 0.1 * relative_variance(scene, by_chance));
+}
+
+TEST_CASE("what polished metal and rough glass throw is found by paths from lights", "[statistical]") {
+  for (const char* name : {"near_mirror", "rough_glass"}) {
+    const Scene scene = standard_scene(std::string("kinds/") + name);
+    RenderOptions by_light = wavefront_options(16);
+    by_light.caustics = Switch::on;
+    by_light.reuse = {false, 8, 8, 64};
+    RenderOptions by_chance = by_light;
+    by_chance.caustics = Switch::off;
+    CAPTURE(name);
+    CHECK(relative_variance(scene, by_light) < 0.7 * relative_variance(scene, by_chance));
+  }
 }
 
 TEST_CASE("the wavefront agrees with castRay on textures, smooth normals and an environment",
