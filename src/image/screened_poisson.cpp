@@ -1,13 +1,16 @@
 #include "image/screened_poisson.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace castray {
 
 namespace {
 
-constexpr int cycles = 3;
+/// How far each cycle goes in its direction: Chebyshev's polynomial for cycles that leave at most 0.9 of an
+/// error. Of what they would leave more of they leave less, too.
+constexpr float cycle_steps[] = {6.24f, 1.818f, 1.064f};
 /// Of two Jacobi steps, as Chebyshev's polynomial has them for the upper three quarters of the spectrum.
 constexpr float first_step = 0.5617f, second_step = 1.389f;
 constexpr int worth_threads = 1 << 16;  ///< pixels
@@ -39,9 +42,15 @@ class Multigrid {
   }
 
   PixelPlanes solve() {
-    start(levels_[0]);
-    for (int i = 0; i < cycles; ++i) cycle(0, i > 0);
-    return std::move(levels_[0].x);
+    Level& finest = levels_[0];
+    PixelPlanes before = finest.x;  // zero
+    start(finest);
+    for (std::size_t i = 0; i < std::size(cycle_steps); ++i) {
+      cycle(0, i > 0);
+      go_further(finest, before, cycle_steps[i]);
+      before = finest.x;
+    }
+    return before;
   }
 
  private:
@@ -65,30 +74,20 @@ class Multigrid {
     });
   }
 
-  /// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks. Where
-  /// couplings are even it is halved, as it spans two in series (Braess 1995); not at edges, where that would
-  /// correct too much.
+  /// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks: with it a
+  /// cycle lessens every error, whatever the couplings.
   PixelCouplings coarser(const PixelCouplings& fine) const {
     PixelCouplings coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
     for (int y = 0; y < fine.height; ++y) {
-      const float *right = fine.right.row(y), *above = fine.below.row(y - 1), *below = fine.below.row(y),
-                  *next = y + 1 < fine.height ? fine.below.row(y + 1) : nullptr;
+      const float *right = fine.right.row(y), *below = fine.below.row(y);
       float *screen = coarse.screen.row(y / 2), *to_right = coarse.right.row(y / 2),
             *to_below = coarse.below.row(y / 2);
       for (int x = 0; x < fine.width; ++x) screen[x / 2] += fine.screen.row(y)[x];
-      for (int x = 1; x + 1 < fine.width; x += 2)
-        to_right[x / 2] += across(right[x - 1], right[x], right[x + 1]);
-      if (y % 2 == 1 && next)
-        for (int x = 0; x < fine.width; ++x) to_below[x / 2] += across(above[x], below[x], next[x]);
+      for (int x = 1; x + 1 < fine.width; x += 2) to_right[x / 2] += right[x];
+      if (y % 2 == 1 && y + 1 < fine.height)
+        for (int x = 0; x < fine.width; ++x) to_below[x / 2] += below[x];
     }
     return coarse;
-  }
-
-  /// Of a coupling that crosses a border, and its neighbours inside the blocks.
-  static float across(float before, float crossing, float after) {
-    const float inside = before * after, outside = crossing * (before + after) / 2;
-    const float most = std::max(inside, outside);
-    return most > 0 ? crossing * (1 - std::min(inside, outside) / (2 * most)) : crossing;
   }
 
   /// One step from zero.
@@ -154,6 +153,17 @@ class Multigrid {
         const float* from = coarse.x[c].row(y / 2);
         float* x = level.x[c].row(y);
         for (int i = 0; i < level.a.width; ++i) x[i] += from[i / 2];
+      }
+    });
+  }
+
+  /// Goes from `before` in the direction of the cycle's result.
+  void go_further(Level& level, const PixelPlanes& before, float step) const {
+    for_rows(level, [&](int y) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float* from = before[c].row(y);
+        float* x = level.x[c].row(y);
+        for (int i = 0; i < level.a.width; ++i) x[i] = from[i] + step * (x[i] - from[i]);
       }
     });
   }

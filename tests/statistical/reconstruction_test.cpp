@@ -110,7 +110,7 @@ TEST_CASE("many seeds show no bias of reconstructed images, in any scene", "[sta
 TEST_CASE("weights of the same samples would make a render darker", "[statistical]") {
   const Scene scene = standard_scene("cornell_box");
   Mean bias;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < 80; ++seed) {
     const Film film = render(scene, options_of(16, 900 + seed)).film;
     const PixelPlanes correction = corrections(film.differences(), 0, 0, 1);
     double sum = 0, brightness = 0;
