@@ -11,8 +11,8 @@
 #include "core/nearest.h"
 #include "core/text.h"
 #include "materials/descriptor.h"
-#include "materials/environment_image.h"
 #include "scene/camera_reader.h"
+#include "scene/environment_reader.h"
 #include "scene/json_reader.h"
 #include "scene/lights_reader.h"
 #include "scene/material_reader.h"
@@ -61,7 +61,7 @@ class SceneFileReader {
     const ObjectReader scene(root, "the scene", keys_of("scene"));
     if (const JsonNode* node = scene.find("image")) read_image_size(*node);
     if (const JsonNode* node = scene.find("render")) read_render(*node);
-    if (const JsonNode* node = scene.find("environment")) read_environment(*node);
+    if (const JsonNode* node = scene.find("environment")) read_environment(*node, file_, builder_);
     if (const JsonNode* node = scene.find("materials")) read_materials(*node);
     if (const JsonNode* lights = scene.find("lights"))
       for (const JsonNode& light : read_array(*lights, "\"lights\""))
@@ -97,32 +97,6 @@ class SceneFileReader {
     for (const JsonNode& flag : node.children)
       builder_.scene.render_defaults.push_back(
           {flag.key, flag_value(flag, "\"" + printable(flag.key) + "\""), flag.key_place});
-  }
-
-  void read_environment(const JsonNode& node) {
-    const ObjectReader environment(node, "\"environment\"", keys_of("environment"));
-    builder_.environment_given = true;
-    const JsonNode* image = environment.find("image");
-    const JsonNode* radiance = image ? environment.find("radiance") : &environment.require("radiance");
-    if (image && radiance)
-      throw InputError(radiance->key_place,
-                       "\"radiance\" or \"image\", not both; \"scale\" makes an image brighter");
-    if (radiance)
-      builder_.scene.environment = read_color(*radiance, "\"radiance\"", not_negative);
-    else
-      read_environment_image(environment, *image);
-  }
-
-  void read_environment_image(const ObjectReader& environment, const JsonNode& image) {
-    const std::filesystem::path path = file_.parent_path() / read_string(image, "\"image\"");
-    if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));
-    Scene& scene = builder_.scene;
-    scene.environment_image.texture = builder_.add_texture(path, ColorSpace::srgb);
-    if (const JsonNode* scale = environment.find("scale"))
-      scene.environment_image.scale = read_number(*scale, "\"scale\"", not_negative);
-    if (const JsonNode* rotation = environment.find("rotation"))
-      scene.environment_image.rotation = read_number(*rotation, "\"rotation\"");
-    scene.environment = mean_environment(scene);
   }
 
   void read_materials(const JsonNode& node) {
@@ -249,7 +223,9 @@ const std::vector<SceneSection>& scene_sections() {
         {"light", light_keys},
         {"lens", lens_keys},
         {"image", {"width", "height"}},
-        {"environment", {"radiance", "image", "scale", "rotation"}},
+        {"environment", environment_keys},
+        {"sky", sky_keys},
+        {"gradient", gradient_keys},
         {"map", map_keys()},
         {"mesh", {"obj", "ply", "material", "transform", "normals", "crease_angle"}},
         {"transform_step", {"scale", "rotate", "translate"}},

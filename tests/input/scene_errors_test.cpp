@@ -163,7 +163,11 @@ const std::vector<Case> cases = {
     in_line("negative radiance", R"(  "environment": { "radiance": [0,-1,0] },)",
             "s.json:2:35: \"radiance\"[1] must be at least 0, not -1"),
     in_line("radiance and an image", R"(  "environment": { "radiance": [1,1,1], "image": "sky.hdr" },)",
-            "s.json:2:20: \"radiance\" or \"image\", not both; \"scale\" makes an image brighter"),
+            "s.json:2:41: \"radiance\" or \"image\", not both; \"scale\" makes an image brighter"),
+    in_line("sun below the horizon", R"(  "environment": { "sky": { "sun_elevation": -5 } },)",
+            "s.json:2:46: \"sun_elevation\" must be at least 0 and at most 90, not -5"),
+    in_line("gradient without a zenith", R"(  "environment": { "gradient": { "horizon": 1 } },)",
+            "s.json:2:32: \"gradient\" needs the key 'zenith'"),
     // Materials
     in_line("material without type", R"(  "materials": { "a": { "kd": [1,1,1] } },)",
             "s.json:2:23: material 'a' needs the key 'type'"),

@@ -1,0 +1,84 @@
+#include "scene/environment_reader.h"
+
+#include <fmt/core.h>
+
+#include "core/files.h"
+#include "core/text.h"
+#include "materials/environment_image.h"
+#include "materials/texture.h"
+#include "scene/sky.h"
+
+namespace castray {
+
+namespace {
+
+/// Texels of half a degree and less: the sun's disc is 0.53 degrees wide.
+constexpr int sky_height = 512, gradient_height = 512;
+
+/// Brings white in the sun near 1.
+constexpr double default_sky_scale = 0.03;
+
+int read_image(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder) {
+  const std::filesystem::path path = file.parent_path() / read_string(node, "\"image\"");
+  if (!is_file(path)) throw InputError(node.place, "no such file: " + printable(path.string()));
+  return builder.add_texture(path, ColorSpace::srgb);
+}
+
+Texture read_sky(const JsonNode& node) {
+  const ObjectReader reader(node, "\"sky\"", sky_keys);
+  Sky sky;
+  const auto read = [&reader](std::string_view key, double least, double greatest, double& value) {
+    if (const JsonNode* found = reader.find(key))
+      value = read_number(*found, fmt::format("\"{}\"", key), {.least = least, .greatest = greatest});
+  };
+  read("turbidity", least_turbidity, greatest_turbidity, sky.turbidity);
+  read("sun_elevation", 0, 90, sky.sun_elevation);
+  read("sun_azimuth", -360, 360, sky.sun_azimuth);
+  if (const JsonNode* sun = reader.find("sun")) sky.sun = read_boolean(*sun, "\"sun\"");
+  if (const JsonNode* ground = reader.find("ground"))
+    sky.ground = read_color(*ground, "\"ground\"", unit_range);
+  return make_texture("a clear sky", sky_image(sky, sky_height));
+}
+
+Texture read_gradient(const JsonNode& node) {
+  const ObjectReader reader(node, "\"gradient\"", gradient_keys);
+  const Vec3d zenith = read_color(reader.require("zenith"), "\"zenith\"", not_negative);
+  const Vec3d horizon = read_color(reader.require("horizon"), "\"horizon\"", not_negative);
+  const JsonNode* ground = reader.find("ground");
+  const Vec3d below = ground ? read_color(*ground, "\"ground\"", not_negative) : Vec3d();
+  return make_texture("a gradient", gradient_image(zenith, horizon, below, gradient_height));
+}
+
+}  // namespace
+
+void read_environment(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder) {
+  const ObjectReader environment(node, "\"environment\"", environment_keys);
+  builder.environment_given = true;
+  const JsonNode* kind = nullptr;
+  for (const char* key : {"radiance", "image", "sky", "gradient"}) {
+    const JsonNode* found = environment.find(key);
+    if (found && kind)
+      throw InputError(
+          found->key_place,
+          fmt::format("\"{}\" or \"{}\", not both; \"scale\" makes an image brighter", kind->key, key));
+    if (found) kind = found;
+  }
+  Scene& scene = builder.scene;
+  if (!kind || kind->key == "radiance") {
+    scene.environment = read_color(environment.require("radiance"), "\"radiance\"", not_negative);
+    return;
+  }
+  EnvironmentImage& image = scene.environment_image;
+  image.texture =
+      kind->key == "image" ? read_image(*kind, file, builder) : builder.add_texture(kind->key, [kind] {
+        return kind->key == "sky" ? read_sky(*kind) : read_gradient(*kind);
+      });
+  image.scale = kind->key == "sky" ? default_sky_scale : 1;
+  if (const JsonNode* scale = environment.find("scale"))
+    image.scale = read_number(*scale, "\"scale\"", not_negative);
+  if (const JsonNode* rotation = environment.find("rotation"))
+    image.rotation = read_number(*rotation, "\"rotation\"");
+  scene.environment = mean_environment(scene);
+}
+
+}  // namespace castray
