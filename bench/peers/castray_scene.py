@@ -4,7 +4,7 @@ import json
 import math
 import re
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 
 import numpy as np
@@ -77,11 +77,28 @@ def read_commented_json(path):
     return json.loads(without)
 
 
+def no_equal_of(what, entry, known):
+    """Stops where the entry asks for something that is not exported to peers."""
+    for key in entry:
+        if key not in known:
+            no_equal(f"{what}: no equal of '{key}'")
+
+
 def json_material(name, entry):
-    known = {key: value for key, value in entry.items() if key not in ("type", "roughness")}
-    material = Material(name=name, type=entry.get("type", "diffuse"), **known)
-    if "roughness" in entry:
-        material.alpha = entry["roughness"] ** 2
+    names = [known.name for known in fields(Material)]
+    no_equal_of(f"material '{name}'", entry, names + ["roughness"])
+    if entry.get("type", "diffuse") not in ("diffuse", "conductor", "dielectric", "microfacet"):
+        no_equal(f"material '{name}': no equal of '{entry['type']}'")
+    values = {"name": name}
+    for key, value in entry.items():
+        if isinstance(value, dict) or (isinstance(value, str) and key != "type"):
+            no_equal(f"material '{name}': no equal of this {key}")
+        grey = key in ("kd", "ks", "reflectance", "ke") and not isinstance(value, list)
+        values[key] = [value] * 3 if grey else value
+    roughness = values.pop("roughness", None)
+    material = Material(**values)
+    if roughness is not None:
+        material.alpha = roughness ** 2
     return material
 
 
@@ -163,6 +180,9 @@ def read_obj(path, matrix, material, use_normals):
 def read_scene(path):
     path = Path(path)
     source = read_commented_json(path)
+    no_equal_of("scene", source, ["$schema", "camera", "image", "materials", "meshes", "environment", "render"])
+    no_equal_of("camera", source["camera"], ["position", "look_at", "up", "fov"])
+    no_equal_of("environment", source.get("environment", {}), ["radiance"])
     materials = {name: json_material(name, entry) for name, entry in source.get("materials", {}).items()}
     meshes = []
     for entry in source["meshes"]:
