@@ -196,6 +196,17 @@ Film read_film(const std::filesystem::path& file);
 /// for what the sums would show.
 Film read_film_header(const std::filesystem::path& file);
 
+/// Reads rows y0 <= y < y1 of the full image, which lie in the window, of a film without replicates; how many
+/// of its samples were not finite is not known of them. Throws InputError where they end early; the checksum
+/// is that of `check_film_file`.
+Film read_film_rows(const std::filesystem::path& file, int y0, int y1);
+
+/// Throws InputError unless the checksum of the file, which is never in memory as a whole, is right.
+void check_film_file(const std::filesystem::path& file);
+
+/// Bytes of memory and of files for a pixel of films like this one, replicates left out.
+std::size_t bytes_of_pixel(const Film& film);
+
 /// Writes the film losslessly to .film files, and its image, made once, to others (see `write_image`). The
 /// bytes of a .film depend only on the samples and `key`, not on the order in which they were added and
 /// merged. `threads`: as for `image_of`.

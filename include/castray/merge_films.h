@@ -24,4 +24,30 @@ struct MergedFilm {
 MergedFilm merge_films(const std::vector<std::filesystem::path>& files,
                        const std::function<void(std::size_t)>& progress = {});
 
+/// The sum of such films, made some rows at a time: no film need be in memory as a whole.
+class MergedRows {
+ public:
+  /// Checks the films as `merge_films` does, checksums too. Throws InputError also where they keep
+  /// replicates.
+  explicit MergedRows(const std::vector<std::filesystem::path>& files);
+
+  /// Around all films.
+  const Window& window() const { return window_; }
+  /// See MergedFilm.
+  const std::vector<std::string>& missing() const { return missing_; }
+
+  /// Rows y0 <= y < y1 of the full image.
+  Film rows(int y0, int y1) const;
+
+ private:
+  struct Part {
+    std::filesystem::path file;
+    Window window;
+  };
+  std::vector<Part> parts_;
+  Film sum_;  ///< of all rows: what it says of itself, of one pixel
+  Window window_;
+  std::vector<std::string> missing_;
+};
+
 }  // namespace castray

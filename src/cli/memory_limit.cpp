@@ -10,12 +10,15 @@
 
 #include "castray/error.h"
 #include "cli/values.h"
+#include "plan/job.h"
+#include "plan/plan.h"
 
 namespace castray::cli {
 
 namespace {
 
-constexpr std::uint64_t bytes_of_a_pixel = 52;  ///< three sums of two doubles, and a count
+/// References and nodes while a tree is built, a few per cent of pre-split triangles among them.
+constexpr std::uint64_t tree_bytes_of_a_triangle = 240;
 
 std::uint64_t resident_bytes() {
   std::ifstream in("/proc/self/statm");
@@ -34,6 +37,11 @@ std::uint64_t parse_bytes(const std::string& flag, const std::string& text) {
   return factor * parse_whole(flag, number, 1, (std::uint64_t{1} << 50) / factor);
 }
 
+std::uint64_t share_of_memory() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) / 2;
+}
+
 std::string bytes_text(std::uint64_t bytes) {
   const double mebibytes = static_cast<double>(bytes) / (1 << 20);
   return mebibytes < 1024 ? fmt::format("{:.1f} MiB", mebibytes)
@@ -41,19 +49,27 @@ std::string bytes_text(std::uint64_t bytes) {
 }
 
 std::string MemoryNeed::text() const {
-  return fmt::format("{} with the scene read, at least {} for the film", bytes_text(scene), bytes_text(film));
+  return fmt::format("{} with the scene read, {} at most for the tree, {} for the film ({} a pixel)",
+                     bytes_text(scene), bytes_text(tree), bytes_text(film()), film_pixel);
 }
 
-MemoryNeed memory_need(const Window& window) {
-  return {resident_bytes(), bytes_of_a_pixel * static_cast<std::uint64_t>(window.width()) *
-                                static_cast<std::uint64_t>(window.height())};
+MemoryNeed memory_need(const Scene& scene, const RenderOptions& options) {
+  const Window window = window_of(scene.width, scene.height, options);
+  const Plan plan = make_plan(scene, options, window);
+  MemoryNeed need;
+  need.scene = resident_bytes();
+  need.tree = plan.list ? 0 : tree_bytes_of_a_triangle * scene.triangles.size();
+  need.differences = options.integrator != Integrator::reference && plan.suffixes > 0 &&
+                     options.reconstruct != Switch::off && !options.target_error;
+  Film film({1, 1, 0, 0, 1, 1}, 1);
+  if (plan.light_paths) film.keep_splats();
+  if (need.differences) film.keep_differences();
+  need.film_pixel = bytes_of_pixel(film);
+  need.pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
+  return need;
 }
 
-MemoryLimit::MemoryLimit(std::uint64_t bytes, const MemoryNeed& need) {
-  if (need.scene + need.film > bytes)
-    throw InputError(
-        fmt::format("--memory-limit of {}: more is needed: {}; render --crop windows and merge their films",
-                    bytes_text(bytes), need.text()));
+MemoryLimit::MemoryLimit(std::uint64_t bytes) {
   rlimit limit{};
   getrlimit(RLIMIT_DATA, &limit);
   former_ = limit.rlim_cur;

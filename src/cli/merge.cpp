@@ -9,6 +9,8 @@
 #include "castray/merge_films.h"
 #include "cli/commands.h"
 #include "cli/display_flags.h"
+#include "cli/film_bands.h"
+#include "cli/memory_limit.h"
 
 namespace castray::cli {
 
@@ -33,6 +35,7 @@ struct Merge {
   std::vector<std::filesystem::path> inputs, outputs;
   DisplayFlags flags;
   bool partial = false;
+  std::string memory_limit;
 
   /// Throws InputError unless what is there shall do.
   void tell_missing(const std::vector<std::string>& missing) const {
@@ -45,11 +48,37 @@ struct Merge {
     fmt::print(stderr, "castray: warning: missing: {}\n", text);
   }
 
+  std::uint64_t most_bytes() const {
+    return memory_limit.empty() ? share_of_memory() : parse_bytes("memory-limit", memory_limit);
+  }
+
+  /// Whether the sum, one film besides and the image have room in memory.
+  bool fits() const {
+    const Film first = read_film_header(inputs.front());
+    const Window& w = first.window();
+    return rows_within(most_bytes(), bytes_of_pixel(first), w.full_width) >= w.full_height;
+  }
+
+  int merge_in_bands(const Display& display, const CommonFlags& common) const {
+    const MergedRows merged(inputs);
+    if (!merged.missing().empty()) tell_missing(merged.missing());
+    const Film first = read_film_header(inputs.front());
+    const Window window = merged.window();
+    const int margin = first.differences().kept() ? reconstruction_margin : 0;
+    const int band =
+        std::max(rows_within(most_bytes(), bytes_of_pixel(first), window.width()) - 2 * margin, 1);
+    const BandedFilm film{window, band, margin, [&](int y0, int y1) { return merged.rows(y0, y1); }};
+    write_film_in_bands(outputs, film, display, describe);
+    if (common.verbose) tell_written(outputs);
+    return 0;
+  }
+
   int run(const CommonFlags& common) const {
     const Display display = flags.display();
     if (!common.quiet) warn_of_darkening(display.tone);
     check_one_standard_output(outputs);
     for (const auto& output : outputs) check_output_image(output);
+    if (!fits()) return merge_in_bands(display, common);
     FilmMeter meter;
     const MergedFilm merged = merge_films(inputs, [&](std::size_t done) {
       if (!common.quiet) meter.tell(done, inputs.size());
@@ -69,6 +98,8 @@ Run add_merge(Arguments& arguments, const CommonFlags& common) {
       .add_positional("FILM", merge->inputs, "films of one render: --part, or disjoint --samples or --crop")
       .required();
   arguments.add_switch("--partial", merge->partial, "merge what is there where parts are missing");
+  arguments.add("--memory-limit", merge->memory_limit, "SIZE",
+                "merge some rows at a time rather than take more memory, as in 4G [half of the machine's]");
   add_outputs(arguments, merge->outputs);
   merge->flags.add_to(arguments);
   merge->flags.add_bits_to(arguments);

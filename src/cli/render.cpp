@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/display_flags.h"
+#include "cli/film_bands.h"
 #include "cli/interrupt.h"
 #include "cli/memory_limit.h"
 #include "cli/render_command.h"
@@ -28,13 +29,41 @@ bool is_as_asked(const RenderRequest& request, Stopped stopped) {
   return stopped == Stopped::done || (stopped == Stopped::time_limit && request.until_time_limit);
 }
 
+/// Where the whole film does not fit, and how many rows at a time do.
+std::optional<int> rows_at_a_time(const RenderRequest& request, const MemoryNeed& need, int width) {
+  const std::uint64_t most = request.memory_limit.value_or(share_of_memory());
+  const std::uint64_t others = need.scene + need.tree;
+  if (need.all() <= most) return std::nullopt;
+  const std::string flag = goes_with_no_bands(request);
+  if (!request.memory_limit && (others >= most || !flag.empty()))
+    return std::nullopt;  // it may fit all the same
+  const std::string why =
+      fmt::format("--memory-limit of {}: more is needed: {}", bytes_text(most), need.text());
+  const int rows = others < most ? rows_within(most - others, need.film_pixel, width) - 2 * need.margin() : 0;
+  if (rows < 1) throw InputError(why + "; give a higher --memory-limit");
+  if (!flag.empty())
+    throw InputError(
+        fmt::format("{}; {} cannot go with an image in bands: render --crop windows and merge their "
+                    "films, or give a higher --memory-limit",
+                    why, flag));
+  return rows;
+}
+
 /// The result is written without the limit, so that it is not lost.
 RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Scene& scene) {
-  const MemoryNeed need = memory_need(window_of(scene.width, scene.height, request.options));
+  const MemoryNeed need = memory_need(scene, request.options);
   if (request.verbose) fmt::print(stderr, "castray: memory: {}\n", need.text());
-  std::optional<MemoryLimit> limit;
-  if (request.memory_limit) limit.emplace(*request.memory_limit, need);
-  return run.run(scene);
+  const std::optional<int> band =
+      rows_at_a_time(request, need, window_of(scene.width, scene.height, request.options).width());
+  RenderResult result;
+  {
+    std::optional<MemoryLimit> limit;
+    if (request.memory_limit) limit.emplace(*request.memory_limit);
+    if (band) return run.run_in_bands(scene, *band, need.margin());
+    result = run.run(scene);
+  }
+  run.save(result.film);
+  return result;
 }
 
 int render_scene(const RenderCommand& command, const CommonFlags& common) {
@@ -50,8 +79,12 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
   RenderRun run(request, report, begin);
   if (!request.quiet) warn_of_darkening(request.display.tone), report.print_scene(request.verbose);
 
-  report.result = run_limited(run, request, scene);
-  run.save(report.result.film);
+  try {
+    report.result = run_limited(run, request, scene);
+  } catch (const BandsInterrupted&) {
+    fmt::print(stderr, "castray: interrupted; an image in bands is written whole or not at all\n");
+    return 130;
+  }
   report.total_seconds = seconds_since(begin);
   if (request.stats) write_file(*request.stats, report.json());
   report.print_nonfinite();

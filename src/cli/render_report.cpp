@@ -11,6 +11,7 @@
 #include "cli/black_film.h"
 #include "cli/scene_report.h"
 #include "cli/shell_word.h"
+#include "plan/job.h"
 
 namespace castray::cli {
 
@@ -106,10 +107,11 @@ void RenderReport::print_nonfinite() const {
 void RenderReport::print_summary(const std::vector<std::filesystem::path>& outputs, bool as_asked) const {
   const RenderStats& s = result.stats;
   const Film& film = result.film;
+  const Window window = window_of(scene.width, scene.height, options);
   if (s.accel_summary.starts_with("BVH"))
     fmt::print(stderr, "BVH generation complete: {}\n", s.accel_summary);
   fmt::print(stderr, "{}: {} triangles, {} x {} pixels, {} spp; {}{}; {} threads\n", scene.name,
-             scene.triangles.size(), film.width(), film.height(), samples_text(film.samples_per_pixel()),
+             scene.triangles.size(), window.width(), window.height(), samples_text(film.samples_per_pixel()),
              s.kernel, s.isa == "none" ? "" : " (" + s.isa + ")", s.threads);
   if (options.epsilon && options.integrator == Integrator::automatic)
     fmt::print(stderr,
@@ -157,10 +159,11 @@ void RenderReport::print_expected_error() const {
 
 std::string RenderReport::json() const {
   const RenderStats& s = result.stats;
+  const Window window = window_of(scene.width, scene.height, options);
   nlohmann::ordered_json object = {{"version", CASTRAY_VERSION},
                                    {"scene", scene.file.string()},
-                                   {"width", result.film.width()},
-                                   {"height", result.film.height()},
+                                   {"width", window.width()},
+                                   {"height", window.height()},
                                    {"spp", spp_number(result.film)},
                                    {"seed", options.seed},
                                    {"threads", s.threads},

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "castray/error.h"
+#include "cli/film_bands.h"
 #include "cli/interrupt.h"
 #include "cli/phase.h"
 #include "cli/temporary_folder.h"
@@ -61,6 +62,45 @@ RenderResult RenderRun::run(const Scene& scene) {
   terminal_.reset();
   display_.finish(result.stats.stopped != Stopped::interrupted);
   return result;
+}
+
+std::string goes_with_no_bands(const RenderRequest& request) {
+  if (request.checkpoint) return "--checkpoint";
+  if (request.preview_seconds) return "--preview-every";
+  if (request.preview_in_terminal) return "--preview";
+  if (request.tev) return "--tev";
+  if (request.replicates) return "--replicates";
+  if (request.options.time_limit) return "--time-limit";
+  if (request.options.target_error) return "--target-error";
+  return std::any_of(request.outputs.begin(), request.outputs.end(), is_film_format) ? "a .film output" : "";
+}
+
+RenderResult RenderRun::run_in_bands(const Scene& scene, int band, int margin) {
+  catch_interrupts();
+  const PreparedScene prepared = prepare_told(scene);
+  display_ = ProgressDisplay(mode());
+  const Window window = window_of(scene.width, scene.height, request_.options);
+  if (!request_.quiet) display_.tell(fmt::format("in bands of {} rows, as memory has no room for all", band));
+  RenderResult all;
+  const auto rows = [&](int y0, int y1) {
+    RenderOptions options = request_.options;
+    options.crop = window;
+    options.crop->y0 = y0, options.crop->y1 = y1;
+    all.film = {};  // its memory is needed
+    RenderResult result = render(prepared, options, [&](const Progress& p) {
+      const double done = y0 - window.y0 + p.fraction * (y1 - y0);
+      return watch({done / window.height(), all.stats.paths + p.paths, nullptr});
+    });
+    if (result.stats.stopped != Stopped::done) throw BandsInterrupted();
+    result.stats = sum_of(all.stats, std::move(result.stats));
+    all = std::move(result);
+    return all.film;
+  };
+  write_film_in_bands(
+      request_.outputs, {window, band, margin, rows}, request_.display,
+      [&](const Film& first) { return report_.metadata(first); }, request_.options.threads);
+  display_.finish(true);
+  return all;
 }
 
 ProgressMode RenderRun::mode() const { return request_.quiet ? ProgressMode::off : request_.progress; }

@@ -13,6 +13,12 @@
 
 namespace castray::cli {
 
+/// An interrupt before all rows were there.
+struct BandsInterrupted {};
+
+/// A flag of the request that needs the whole film in memory; empty if none does.
+std::string goes_with_no_bands(const RenderRequest& request);
+
 /// Renders what is requested: with progress, checkpoints, snapshots of the outputs, and signals answered.
 class RenderRun {
  public:
@@ -22,6 +28,10 @@ class RenderRun {
   RenderRun(const RenderRequest& request, const RenderReport& report, Clock::time_point begin);
 
   RenderResult run(const Scene& scene);
+
+  /// Renders so many rows at a time, with a margin above and below of which their image depends, and writes
+  /// them to the outputs. The result's film is that of the last rows. Throws BandsInterrupted.
+  RenderResult run_in_bands(const Scene& scene, int band, int margin);
 
   /// Writes the film to the checkpoint, then to the outputs.
   void save(const Film& film);

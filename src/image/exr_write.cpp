@@ -10,7 +10,7 @@
 #include <ostream>
 
 #include "image/exr_channels.h"
-#include "image/formats.h"
+#include "image/row_writer.h"
 
 namespace castray {
 
@@ -58,29 +58,54 @@ void add_metadata(Imf::Header& header, const Metadata& metadata) {
       header.insert(key, Imf::StringAttribute(value));
 }
 
+class ExrWriter final : public RowWriter {
+ public:
+  ExrWriter(std::ostream& out, const WrittenImage& image)
+      : noise_(image.noise),
+        bits16_(image.display.bits16),
+        stream_(out),
+        file_(stream_, header_of(image), 0) {}
+
+  void add(const Image& rows) override {
+    const Imath::Box2i window({0, y_}, {rows.width - 1, y_ + rows.height - 1});
+    Imf::FrameBuffer frame;
+    const std::vector<half> halves = bits16_ ? halves_of(rows) : std::vector<half>();
+    if (bits16_)
+      add_to(frame, halves.data(), rows.width, exr_rgb, window);
+    else
+      add_to(frame, floats_of(rows), rows.width, exr_rgb, window);
+    if (noise_)
+      add_to(frame, reinterpret_cast<const float*>(&noise_->variance.at(0, y_)), rows.width, exr_variances,
+             window);
+    file_.setFrameBuffer(frame);
+    file_.writePixels(rows.height);
+    y_ += rows.height;
+  }
+
+ private:
+  static Imf::Header header_of(const WrittenImage& image) {
+    Imf::Header header(image.width, image.height);
+    const Imf::PixelType rgb_type = image.display.bits16 ? Imf::HALF : Imf::FLOAT;
+    for (const char* name : exr_rgb) header.channels().insert(name, Imf::Channel(rgb_type));
+    if (const auto& noise = image.noise) {
+      for (const char* name : exr_variances) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+      header.insert(exr_freedom, Imf::FloatAttribute(static_cast<float>(noise->freedom)));
+    }
+    add_metadata(header, image.metadata);
+    return header;
+  }
+
+  const std::optional<Noise>& noise_;
+  bool bits16_;
+  StreamOut stream_;
+  Imf::OutputFile file_;
+  int y_ = 0;
+};
+
 }  // namespace
 
-void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
-               const std::optional<Noise>& noise, bool bits16) {
-  Imf::Header header(image.width, image.height);
-  Imf::FrameBuffer frame;
-  const Imf::PixelType rgb_type = bits16 ? Imf::HALF : Imf::FLOAT;
-  for (const char* name : exr_rgb) header.channels().insert(name, Imf::Channel(rgb_type));
-  const std::vector<half> halves = bits16 ? halves_of(image) : std::vector<half>();
-  if (bits16)
-    add_to(frame, halves.data(), image.width, exr_rgb, header.dataWindow());
-  else
-    add_to(frame, floats_of(image), image.width, exr_rgb, header.dataWindow());
-  if (noise) {
-    for (const char* name : exr_variances) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    add_to(frame, floats_of(noise->variance), image.width, exr_variances, header.dataWindow());
-    header.insert(exr_freedom, Imf::FloatAttribute(static_cast<float>(noise->freedom)));
-  }
-  add_metadata(header, metadata);
-  StreamOut stream(out);
-  Imf::OutputFile file(stream, header, 0);
-  file.setFrameBuffer(frame);
-  file.writePixels(image.height);
+std::unique_ptr<RowWriter> write_exr(std::ostream& out, const WrittenImage& image) {
+  return std::make_unique<ExrWriter>(out, image);
 }
 
 }  // namespace castray

@@ -301,6 +301,12 @@ std::uint64_t Film::missing_samples() const {
   return wanted * counts_.size() - std::min(taken, wanted * counts_.size());
 }
 
+std::size_t bytes_of_pixel(const Film& film) {
+  constexpr std::size_t radiance = 3 * 2 * sizeof(double);
+  return radiance + sizeof(std::uint32_t) + (film.keeps_splats() ? radiance + sizeof(std::uint64_t) : 0) +
+         (film.differences().kept() ? DifferenceSums::bytes_of_pixel : 0);
+}
+
 std::string samples_text(double samples_per_pixel) {
   return fmt::format("{:.{}f}", samples_per_pixel,
                      samples_per_pixel == std::floor(samples_per_pixel) ? 0 : 1);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
@@ -86,6 +87,40 @@ struct FilmFile {
     } catch (const json::exception& error) {
       throw InputError({name}, std::string("has a corrupt header: ") + error.what());
     }
+  }
+
+  /// Rows y0 <= y < y1 of the full image, of a film without replicates.
+  static Film read_rows(const std::filesystem::path& file, int y0, int y1) {
+    const std::string head = read_head(file, magic.size(), '\n');
+    std::size_t section = 0;
+    Film film = parse_head(file.string(), head, section);
+    const auto columns = static_cast<std::size_t>(film.width());
+    const std::size_t pixels = columns * static_cast<std::size_t>(film.height());
+    const std::size_t first = columns * static_cast<std::size_t>(y0 - film.window_.y0);
+    const std::size_t count = columns * static_cast<std::size_t>(y1 - y0);
+    film.window_.y0 = y0, film.window_.y1 = y1;
+    std::ifstream in(file, std::ios::binary);
+    const auto read = [&](auto& values, std::size_t per_pixel, std::size_t halves = 1) {
+      const std::size_t bytes = per_pixel * sizeof values[0];
+      values.resize(halves * per_pixel * count);
+      for (std::size_t half = 0; half < halves; ++half, section += pixels * bytes) {
+        in.seekg(static_cast<std::streamoff>(section + first * bytes));
+        in.read(reinterpret_cast<char*>(values.data() + half * per_pixel * count),
+                static_cast<std::streamsize>(count * bytes));
+      }
+    };
+    read(film.sums_, 3);
+    read(film.counts_, 1);
+    if (film.keeps_splats()) read(film.splats_, 3), read(film.light_paths_, 1);
+    if (film.differences_.kept()) {
+      film.keep_differences();
+      constexpr std::size_t terms = DifferenceSums::terms, channels = DifferenceSums::channels;
+      read(film.differences_.all_sums(), terms * channels, DifferenceSums::halves);
+      read(film.differences_.all_counts(), terms, DifferenceSums::halves);
+    }
+    if (!in) throw InputError({file.string()}, "is truncated");
+    film.nonfinite_samples = 0;
+    return film;
   }
 
   static Film parse(const std::string& name, std::string_view bytes) {
@@ -202,6 +237,28 @@ Film parse_film(const std::string& name, std::string_view bytes) { return FilmFi
 Film read_film(const std::filesystem::path& file) {
   const std::string bytes = read_file(file);
   return parse_film(file.string(), bytes);
+}
+
+Film read_film_rows(const std::filesystem::path& file, int y0, int y1) {
+  return FilmFile::read_rows(file, y0, y1);
+}
+
+void check_film_file(const std::filesystem::path& file) {
+  read_film_header(file);
+  std::uint32_t stored = 0;
+  std::uintmax_t left = std::filesystem::file_size(file) - sizeof stored;
+  std::ifstream in(file, std::ios::binary);
+  std::vector<char> block(std::size_t{1} << 20);
+  uLong sum = crc32_z(0, nullptr, 0);
+  while (left > 0 && in) {
+    const auto count = static_cast<std::size_t>(std::min<std::uintmax_t>(left, block.size()));
+    in.read(block.data(), static_cast<std::streamsize>(count));
+    sum = crc32_z(sum, reinterpret_cast<const unsigned char*>(block.data()), count);
+    left -= count;
+  }
+  in.read(reinterpret_cast<char*>(&stored), sizeof stored);
+  if (!in || stored != sum)
+    throw InputError({file.string()}, "is truncated or corrupt: its checksum is wrong");
 }
 
 Film read_film_header(const std::filesystem::path& file) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <iosfwd>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,20 +37,6 @@ void drop_opaque_alpha(Raster& raster);
 
 /// Its colours; grey is widened to RGB.
 Image colours_of(const Raster& raster);
-
-void write_pfm(std::ostream& out, const Image& image);
-void write_hdr(std::ostream& out, const Image& image);
-void write_exr(std::ostream& out, const Image& image, const Metadata& metadata,
-               const std::optional<Noise>& noise, bool bits16);
-
-/// RGB of 8 or 16 bits, big-endian, top row first.
-struct QuantisedImage {
-  int width = 0, height = 0;
-  std::vector<unsigned char> bytes;
-  int bits = 8;
-};
-void write_ppm(std::ostream& out, const QuantisedImage& image);
-void write_png(std::ostream& out, const QuantisedImage& image, const Metadata& metadata);
 
 /// Throws InputError unless an image of this size can be in a file of this length, whose format packs at most
 /// `pixels_per_byte`: asked before memory is taken, so that a forged header cannot exhaust it.

@@ -8,6 +8,7 @@
 
 #include "castray/error.h"
 #include "image/formats.h"
+#include "image/row_writer.h"
 
 namespace castray {
 
@@ -195,17 +196,46 @@ Decoded read_hdr(const std::string& name, std::string_view bytes) {
   return {std::move(raster)};
 }
 
-void write_hdr(std::ostream& out, const Image& image) {
-  std::vector<float> data;  // stb truncates, so it gets what it can store exactly
-  data.reserve(3 * image.pixels.size());
-  for (const Vec3f& pixel : image.pixels) {
-    const Vec3f nearest = nearest_rgbe(pixel);
-    data.insert(data.end(), {nearest.x, nearest.y, nearest.z});
+namespace {
+
+/// stb writes whole files: of each piece its header is left out, but for the first, which tells all rows.
+class HdrWriter final : public RowWriter {
+ public:
+  HdrWriter(std::ostream& out, const WrittenImage& image) : out_(out), height_(image.height) {}
+
+  void add(const Image& rows) override {
+    const std::string bytes = file_of(rows);
+    const std::size_t size_line = bytes.find("\n-Y ") + 1, pixels = bytes.find('\n', size_line) + 1;
+    if (first_) out_ << bytes.substr(0, size_line) << "-Y " << height_ << " +X " << rows.width << '\n';
+    first_ = false;
+    out_.write(bytes.data() + pixels, static_cast<std::streamsize>(bytes.size() - pixels));
   }
-  const auto write = [](void* stream, void* bytes, int size) {
-    static_cast<std::ostream*>(stream)->write(static_cast<const char*>(bytes), size);
-  };
-  stbi_write_hdr_to_func(write, &out, image.width, image.height, 3, data.data());
+
+ private:
+  static std::string file_of(const Image& rows) {
+    std::vector<float> data;  // stb truncates, so it gets what it can store exactly
+    data.reserve(3 * rows.pixels.size());
+    for (const Vec3f& pixel : rows.pixels) {
+      const Vec3f nearest = nearest_rgbe(pixel);
+      data.insert(data.end(), {nearest.x, nearest.y, nearest.z});
+    }
+    std::string bytes;
+    const auto append = [](void* to, void* from, int size) {
+      static_cast<std::string*>(to)->append(static_cast<const char*>(from), static_cast<std::size_t>(size));
+    };
+    stbi_write_hdr_to_func(append, &bytes, rows.width, rows.height, 3, data.data());
+    return bytes;
+  }
+
+  std::ostream& out_;
+  int height_;
+  bool first_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<RowWriter> write_hdr(std::ostream& out, const WrittenImage& image) {
+  return std::make_unique<HdrWriter>(out, image);
 }
 
 }  // namespace castray

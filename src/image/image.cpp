@@ -8,27 +8,14 @@
 #include "castray/film.h"
 #include "core/files.h"
 #include "image/formats.h"
+#include "image/row_writer.h"
 
 namespace castray {
 
 namespace {
 
-QuantisedImage quantised(const Image& image, const Display& display) {
-  const Image values = displayed(image, display);
-  QuantisedImage result{image.width, image.height, {}, display.bits16 ? 16 : 8};
-  result.bytes.reserve((display.bits16 ? 6 : 3) * values.pixels.size());
-  for (const Vec3f& v : values.pixels)
-    for (int c = 0; c < 3; ++c) {
-      const long value = std::lround((display.bits16 ? 65535 : 255) * v[c]);
-      if (display.bits16) result.bytes.push_back(static_cast<unsigned char>(value >> 8));
-      result.bytes.push_back(static_cast<unsigned char>(value & 255));
-    }
-  return result;
-}
-
 using Read = Decoded (*)(const std::string& name, std::string_view bytes, const std::string& layer);
-using Write = void (*)(std::ostream& out, const Image& image, const Display& display,
-                       const Metadata& metadata, const std::optional<Noise>& noise);
+using Write = std::unique_ptr<RowWriter> (*)(std::ostream& out, const WrittenImage& image);
 
 struct Format {
   const char* suffix;
@@ -43,33 +30,12 @@ template <Decoded (*read)(const std::string&, std::string_view)>
 constexpr Read plain =
     [](const std::string& name, std::string_view bytes, const std::string&) { return read(name, bytes); };
 
-using OptionalNoise = const std::optional<Noise>&;
-
-void write_ppm_image(std::ostream& out, const Image& image, const Display& display, const Metadata&,
-                     OptionalNoise) {
-  write_ppm(out, quantised(image, display));
-}
-void write_png_image(std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
-                     OptionalNoise) {
-  write_png(out, quantised(image, display), metadata);
-}
-void write_pfm_image(std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
-  write_pfm(out, image);
-}
-void write_hdr_image(std::ostream& out, const Image& image, const Display&, const Metadata&, OptionalNoise) {
-  write_hdr(out, image);
-}
-void write_exr_image(std::ostream& out, const Image& image, const Display& display, const Metadata& metadata,
-                     OptionalNoise noise) {
-  write_exr(out, image, metadata, noise, display.bits16);
-}
-
 constexpr Format formats[] = {
-    {".ppm", "P6", true, plain<read_netpbm>, write_ppm_image},
-    {".png", "\x89PNG", true, plain<read_png>, write_png_image},
-    {".pfm", "PF", false, plain<read_pfm>, write_pfm_image},
-    {".hdr", "#?", false, plain<read_hdr>, write_hdr_image},
-    {".exr", "\x76\x2f\x31\x01", false, read_exr, write_exr_image},
+    {".ppm", "P6", true, plain<read_netpbm>, write_ppm},
+    {".png", "\x89PNG", true, plain<read_png>, write_png},
+    {".pfm", "PF", false, plain<read_pfm>, write_pfm},
+    {".hdr", "#?", false, plain<read_hdr>, write_hdr},
+    {".exr", "\x76\x2f\x31\x01", false, read_exr, write_exr},
     {".film", "", false, nullptr, nullptr},
     {".jpg", "\xff\xd8\xff", true, plain<read_jpeg>, nullptr},
     {".jpeg", "", true, plain<read_jpeg>, nullptr},
@@ -180,17 +146,43 @@ Raster read_raster(const std::filesystem::path& file) {
   return format.read(file.string(), bytes, "").raster;
 }
 
-void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
-                 const Metadata& metadata, const std::optional<Noise>& noise) {
+std::vector<unsigned char> quantised(const Image& rows, const Display& display) {
+  const Image values = displayed(rows, display);
+  std::vector<unsigned char> bytes;
+  bytes.reserve((display.bits16 ? 6 : 3) * values.pixels.size());
+  for (const Vec3f& v : values.pixels)
+    for (int c = 0; c < 3; ++c) {
+      const long value = std::lround((display.bits16 ? 65535 : 255) * v[c]);
+      if (display.bits16) bytes.push_back(static_cast<unsigned char>(value >> 8));
+      bytes.push_back(static_cast<unsigned char>(value & 255));
+    }
+  return bytes;
+}
+
+std::unique_ptr<RowWriter> row_writer(const std::filesystem::path& file, std::ostream& out,
+                                      const WrittenImage& image) {
   const Format& format = writable_format_of(file);
   if (!format.write)
     throw InputError({file.string()}, "a film holds samples, which an image has not; choose another format");
-  write_file(file, [&](std::ostream& out) { format.write(out, image, display, metadata, noise); });
+  return format.write(out, image);
+}
+
+void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
+                 const Metadata& metadata, const std::optional<Noise>& noise) {
+  const WrittenImage written{image.width, image.height, display, metadata, noise};
+  write_file(file, [&](std::ostream& out) {
+    const auto writer = row_writer(file, out, written);
+    writer->add(image);
+    writer->finish();
+  });
 }
 
 std::string encode_png(const Image& image, const Display& display, const Metadata& metadata) {
   std::ostringstream out;
-  write_png(out, quantised(image, display), metadata);
+  const std::optional<Noise> none;
+  const auto writer = write_png(out, {image.width, image.height, display, metadata, none});
+  writer->add(image);
+  writer->finish();
   return std::move(out).str();
 }
 

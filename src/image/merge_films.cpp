@@ -155,6 +155,19 @@ class Census {
   std::vector<WindowFilms> windows_;
 };
 
+void note_missing(std::vector<std::string>& missing, std::uint64_t samples, const fs::path& file) {
+  if (samples > 0)
+    missing.push_back(fmt::format("{} samples of {}, which was stopped early", samples, file.string()));
+}
+
+/// How many samples the film lacks, row by row.
+std::uint64_t missing_samples(const fs::path& file, const Film& header) {
+  std::uint64_t missing = 0;
+  for (int y = header.window().y0; y < header.window().y1; ++y)
+    missing += read_film_rows(file, y, y + 1).missing_samples();
+  return missing - std::min(missing, header.nonfinite_samples);
+}
+
 }  // namespace
 
 MergedFilm merge_films(const std::vector<fs::path>& files, const std::function<void(std::size_t)>& progress) {
@@ -163,14 +176,42 @@ MergedFilm merge_films(const std::vector<fs::path>& files, const std::function<v
   for (std::size_t i = 0; i < files.size(); ++i) {
     const Film part = read_film(files[i]);
     merged.film.add(part);
-    if (part.planned && part.missing_samples() > 0)
-      merged.missing.push_back(fmt::format("{} samples of {}, which was stopped early",
-                                           part.missing_samples(), files[i].string()));
+    if (part.planned) note_missing(merged.missing, part.missing_samples(), files[i]);
     if (progress) progress(i + 1);
   }
   merged.film.samples = census.samples();
   merged.film.planned = census.planned();
   return merged;
+}
+
+MergedRows::MergedRows(const std::vector<fs::path>& files) {
+  const Census census(files);
+  window_ = census.window();
+  missing_ = census.missing();
+  sum_ = census.first().without_samples({window_.full_width, window_.full_height, 0, 0, 1, 1});
+  sum_.samples = census.samples();
+  sum_.planned = census.planned();
+  for (const fs::path& file : files) {
+    const Film header = read_film_header(file);
+    if (header.keeps_replicates())
+      throw InputError({file.string()},
+                       "keeps replicates, which are merged as a whole only; raise --memory-limit");
+    check_film_file(file);
+    if (header.planned) note_missing(missing_, missing_samples(file, header), file);
+    parts_.push_back({file, header.window()});
+  }
+}
+
+Film MergedRows::rows(int y0, int y1) const {
+  Window window = window_;
+  window.y0 = y0, window.y1 = y1;
+  Film sum = sum_.without_samples(window);
+  sum.samples = sum_.samples;
+  for (const Part& part : parts_) {
+    const int from = std::max(y0, part.window.y0), to = std::min(y1, part.window.y1);
+    if (from < to) sum.add(read_film_rows(part.file, from, to));
+  }
+  return sum;
 }
 
 }  // namespace castray

@@ -8,6 +8,7 @@
 
 #include "castray/error.h"
 #include "image/formats.h"
+#include "image/row_writer.h"
 
 static_assert(std::endian::native == std::endian::little,
               "PFM and film files are written as memory holds them");
@@ -122,17 +123,55 @@ Decoded read_pfm(const std::string& name, std::string_view bytes) {
   return {std::move(raster)};
 }
 
-void write_ppm(std::ostream& out, const QuantisedImage& image) {
-  out << "P6\n" << image.width << ' ' << image.height << (image.bits == 16 ? "\n65535\n" : "\n255\n");
-  out.write(reinterpret_cast<const char*>(image.bytes.data()),
-            static_cast<std::streamsize>(image.bytes.size()));
+namespace {
+
+class PpmWriter final : public RowWriter {
+ public:
+  PpmWriter(std::ostream& out, const WrittenImage& image) : out_(out), display_(image.display) {
+    out << "P6\n" << image.width << ' ' << image.height << (display_.bits16 ? "\n65535\n" : "\n255\n");
+  }
+  void add(const Image& rows) override {
+    const std::vector<unsigned char> bytes = quantised(rows, display_);
+    out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+
+ private:
+  std::ostream& out_;
+  const Display& display_;
+};
+
+/// The format has the bottom row first.
+class PfmWriter final : public RowWriter {
+ public:
+  PfmWriter(std::ostream& out, const WrittenImage& image) : out_(out), rows_left_(image.height) {
+    out << "PF\n" << image.width << ' ' << image.height << "\n-1.0\n";
+    begin_ = static_cast<std::streamoff>(out.tellp());
+  }
+  void add(const Image& rows) override {
+    static_assert(sizeof(Vec3f) == 12);
+    const std::streamsize row_bytes = 12L * rows.width;
+    rows_left_ -= rows.height;
+    if (moved_ || rows_left_ > 0) out_.seekp(begin_ + rows_left_ * row_bytes);
+    moved_ = true;
+    for (int y = rows.height - 1; y >= 0; --y)
+      out_.write(reinterpret_cast<const char*>(&rows.at(0, y)), row_bytes);
+  }
+
+ private:
+  std::ostream& out_;
+  std::streamoff begin_ = 0;  ///< of the pixels
+  int rows_left_;
+  bool moved_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<RowWriter> write_ppm(std::ostream& out, const WrittenImage& image) {
+  return std::make_unique<PpmWriter>(out, image);
 }
 
-void write_pfm(std::ostream& out, const Image& image) {
-  static_assert(sizeof(Vec3f) == 12);
-  out << "PF\n" << image.width << ' ' << image.height << "\n-1.0\n";
-  for (int y = image.height - 1; y >= 0; --y)
-    out.write(reinterpret_cast<const char*>(&image.at(0, y)), 12L * image.width);
+std::unique_ptr<RowWriter> write_pfm(std::ostream& out, const WrittenImage& image) {
+  return std::make_unique<PfmWriter>(out, image);
 }
 
 }  // namespace castray

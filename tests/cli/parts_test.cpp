@@ -53,6 +53,69 @@ TEST_CASE("the parts of a render merge to its bytes, in any order") {
   CHECK(read_file(folder / "m.film") == read_file(folder / "whole.film"));
 }
 
+TEST_CASE("merge adds any number of films in less memory than one of them takes, to the same bytes") {
+  const TemporaryFolder folder;
+  const auto part = [&](const std::string& name, const Words& more) {
+    Words words{"render", CASTRAY_ROOT "/scenes/cornell_conductor.json",
+                "--size", "512x1024",
+                "-q",     "--threads",
+                "1",      "-o",
+                name};
+    words.insert(words.end(), more.begin(), more.end());
+    REQUIRE(run_castray(words, folder.path()).exit_code == 0);
+  };
+  part("a.film", {"--spp", "3", "--part", "0/3", "--crop", "0,0,512,500"});
+  part("b.film", {"--spp", "3", "--samples", "1:2", "--crop", "0,0,512,500"});
+  part("c.film", {"--spp", "3", "--crop", "0,500,512,1024"});
+  const auto merged = [&](const std::string& name, const Words& more) {
+    Words words{"c.film", "a.film", "b.film", "-o", name + ".exr", "-o", name + ".png"};
+    words.insert(words.end(), more.begin(), more.end());
+    return merge(folder, words);
+  };
+  const RunResult whole = merged("whole", {});
+  REQUIRE(whole.exit_code == 0);
+  const RunResult bands = merged("bands", {"--memory-limit", "4M"});
+  CAPTURE(bands.err);
+  REQUIRE(bands.exit_code == 0);
+  for (const char* suffix : {".exr", ".png"})
+    CHECK(read_file(folder / (std::string("bands") + suffix)) ==
+          read_file(folder / (std::string("whole") + suffix)));
+  CHECK(whole.peak_kilobytes > 50 * 1024);  // the film alone has 26 MB
+  CHECK(bands.peak_kilobytes < 26 * 1024);
+  // a byte that is wrong is found
+  std::string bytes = read_file(folder / "b.film");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_file(folder / "b.film", bytes);
+  const RunResult corrupt = merged("corrupt", {"--memory-limit", "4M"});
+  CHECK(corrupt.exit_code == 2);
+  CHECK_THAT(corrupt.err, Contains("b.film: ") && Contains("checksum"));
+  CHECK_FALSE(std::filesystem::exists(folder / "corrupt.exr"));
+}
+
+TEST_CASE("merge adds 300 films with the memory of a few") {
+  const TemporaryFolder folder;
+  REQUIRE(render(folder, {"--size", "256x256", "--samples", "0:1", "-o", "p.film"}).exit_code == 0);
+  const Film first = read_film(folder / "p.film");
+  Words names;
+  for (std::uint64_t i = 0; i < 300;
+       ++i) {  // the same sums under other sample numbers: only bytes are counted here
+    Film film = first;
+    film.samples = {{i, 1}};
+    film.planned = SampleRange{0, 300};
+    names.push_back(fmt::format("{}.film", i));
+    write_film(folder / names.back(), film);
+  }
+  Words words = names;
+  words.insert(words.end(), {"-o", "m.film"});
+  const RunResult all = merge(folder, words);
+  CAPTURE(all.err);
+  REQUIRE(all.exit_code == 0);
+  CHECK(all.peak_kilobytes < 40 * 1024);
+  const Film sum = read_film(folder / "m.film");
+  CHECK(sum.samples == std::vector<SampleRange>{{0, 300}});
+  CHECK(sum.count(100, 100) == 300 * first.count(100, 100));
+}
+
 TEST_CASE("merge names what is missing, and does with it only if told to") {
   const TemporaryFolder folder;
   for (const char* part : {"0", "2"})
