@@ -48,8 +48,10 @@ def main():
     rows = sorted(map(row, report["scenes"]), key=lambda entry: entry["worst"])
     names = [curve["name"] for curve in report["scenes"][0]["curves"] if curve["name"] != "castray"]
     first = report["scenes"][0]
-    text = HEAD + (f"{first['width']}x{first['height']}, {report['machine']}, {report['threads']} threads, medians of "
-                   f"{report['seeds']} seeds.\n\n![How many times as efficient](kinds/kinds.svg)\n\n" + markdown(rows, names))
+    seeds = "one seed" if report["seeds"] == 1 else f"medians of {report['seeds']} seeds"
+    spp = first["curves"][0]["points"][-1]["spp"]
+    text = HEAD + (f"{first['width']}x{first['height']}, {spp} spp, {report['machine']}, {report['threads']} threads, {seeds}.\n\n"
+                   "![How many times as efficient](kinds/kinds.svg)\n\n" + markdown(rows, names))
     for entry in rows:
         name = entry["scene"]
         files, line = pictures(by_name[name], "kinds")
