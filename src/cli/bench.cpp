@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -59,17 +58,10 @@ void check_flags(const BenchFlags& flags) {
     if (!file.empty()) check_writable(file);
 }
 
-/// A contender's name as part of a file's.
-std::string file_word(std::string name) {
-  for (char& c : name)
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
-  return name;
-}
-
 void write_pictures(const std::filesystem::path& folder, const BenchScene& scene) {
   std::filesystem::create_directories(folder);
   const auto write = [&](const std::string& name, const Image& image) {
-    write_image(folder / fmt::format("{}.{}.png", scene.name, file_word(name)), image);
+    write_image(folder / fmt::format("{}.{}.png", scene.name, as_file_name(name)), image);
   };
   write("reference", scene.reference_image);
   for (const BenchCurve& curve : scene.curves)

@@ -89,16 +89,6 @@ Camera camera_of(const Scene& scene, const json& view) {
   return camera;
 }
 
-std::string file_name(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(),
-      [](char c) {
-        return !(std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.');
-      },
-      '_');
-  return name;
-}
-
 void refuse(httplib::Response& response, int status, const std::string& why) {
   response.status = status;
   response.set_content(json{{"error", why}}.dump(-1, ' ', false, json::error_handler_t::replace),
@@ -266,7 +256,7 @@ void PageServer::send_image(const Request& request, Response& response, const ch
   const auto file = folder.path() / (std::string("image") + suffix);
   write_image(file, frame->image, display, metadata(*frame));
   response.set_header("Content-Disposition",
-                      fmt::format("attachment; filename=\"{}{}\"", file_name(served_.name), suffix));
+                      fmt::format("attachment; filename=\"{}{}\"", as_file_name(served_.name), suffix));
   response.set_content(read_file(file), "application/octet-stream");
 }
 

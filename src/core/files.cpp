@@ -194,6 +194,12 @@ std::ifstream open_to_read(const fs::path& file) {
 
 }  // namespace
 
+std::string as_file_name(std::string text) {
+  for (char& c : text)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '.') c = '_';
+  return text;
+}
+
 std::string read_file(const fs::path& file) {
   std::ifstream in = open_to_read(file);
   std::error_code ignored;

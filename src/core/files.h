@@ -11,6 +11,9 @@ namespace castray {
 /// What a file's name ends in, with the dot, in lower case: ".obj".
 std::string suffix_of(const std::filesystem::path& file);
 
+/// The text as part of a file's name: all but letters, digits, '-', '_' and '.' is '_'.
+std::string as_file_name(std::string text);
+
 /// All bytes of a file. Throws InputError that says why it cannot be read.
 std::string read_file(const std::filesystem::path& file);
 

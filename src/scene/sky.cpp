@@ -104,6 +104,9 @@ Vec3d direction(double x, double y, const Image& image) {
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
+/// Of a texel in row y, in steradians.
+double solid_angle(int y, const Image& image) { return 4 * pi * share_of_row(y, image.height) / image.width; }
+
 /// What share of each texel the sun's disc covers.
 std::vector<double> sun_cover(const Vec3d& sun, const Image& image) {
   constexpr int steps = 16;
@@ -124,11 +127,9 @@ std::vector<double> sun_cover(const Vec3d& sun, const Image& image) {
 
 void add_sun(const Sky& sky, const Vec3d& sun, Image& image) {
   const std::vector<double> cover = sun_cover(sun, image);
-  const auto solid_angle = [&](std::size_t i) {
-    return 4 * pi * share_of_row(static_cast<int>(i) / image.width, image.height) / image.width;
-  };
   double covered = 0;
-  for (std::size_t i = 0; i < cover.size(); ++i) covered += cover[i] * solid_angle(i);
+  for (std::size_t i = 0; i < cover.size(); ++i)
+    covered += cover[i] * solid_angle(static_cast<int>(i) / image.width, image);
   const Vec3d radiance =
       transmittance(sky.turbidity, std::acos(std::clamp(sun.y, -1.0, 1.0))) * (illuminance_outside / covered);
   for (std::size_t i = 0; i < cover.size(); ++i)
@@ -140,8 +141,7 @@ Vec3d irradiance(const Image& image) {
   Vec3d sum;
   for (int y = 0; y < image.height / 2; ++y)
     for (int x = 0; x < image.width; ++x)
-      sum += Vec3d(image.at(x, y)) *
-             (4 * pi * share_of_row(y, image.height) / image.width * std::cos(pi * (y + 0.5) / image.height));
+      sum += Vec3d(image.at(x, y)) * (solid_angle(y, image) * std::cos(pi * (y + 0.5) / image.height));
   return sum;
 }
 

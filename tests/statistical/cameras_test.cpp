@@ -3,7 +3,6 @@
 #include <string>
 
 #include "castray_blocks.h"
-#include "integrators.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -58,20 +57,11 @@ TEST_CASE("through every camera caustics agree with castRay", "[statistical]") {
 TEST_CASE("every form of the wavefront has the same mean through a lens", "[statistical]") {
   const Scene scene = through("blades", standard_scene("cornell_box"));
   const Expected expected(scene);
-  const auto check = [&](const std::string& what, const auto& change) {
-    RenderOptions options = wavefront_options(4);
-    change(options);
-    expected.check(what, scene, options);
-  };
-  for (const std::string& isa : instruction_sets())
-    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
-      check(isa + (accel == AccelKind::list ? ", list" : ", tree"), [&](RenderOptions& o) {
-        o.isa = isa;
-        o.accel = accel;
-      });
-  check("generic", [](RenderOptions& o) { o.generic = true; });
-  check("reconstructed", [](RenderOptions& o) { o.reconstruct = Switch::on; });
-  check("independent numbers", [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
+  expected.check_each_kernel(scene);
+  expected.check_with("generic", scene, [](RenderOptions& o) { o.generic = true; });
+  expected.check_with("reconstructed", scene, [](RenderOptions& o) { o.reconstruct = Switch::on; });
+  expected.check_with("independent numbers", scene,
+                      [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
 }
 
 TEST_CASE("without jitter a lens still blurs", "[statistical]") {

@@ -109,19 +109,9 @@ TEST_CASE("lights without size: the wavefront agrees with castRay on every mater
 TEST_CASE("lights without size: every form of the wavefront has the same mean", "[statistical]") {
   const Scene scene = lit(standard_scene("cornell_box"), {point, spot, far});
   const Expected expected(scene);
-  const auto check = [&](const std::string& what, const auto& change) {
-    RenderOptions options = wavefront_options(4);
-    change(options);
-    expected.check(what, scene, options);
-  };
-  for (const std::string& isa : instruction_sets())
-    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
-      check(isa + (accel == AccelKind::list ? ", list" : ", tree"), [&](RenderOptions& o) {
-        o.isa = isa;
-        o.accel = accel;
-      });
-  check("generic", [](RenderOptions& o) { o.generic = true; });
-  check("MIS", [](RenderOptions& o) { o.mis = Switch::on; });
+  expected.check_each_kernel(scene);
+  expected.check_with("generic", scene, [](RenderOptions& o) { o.generic = true; });
+  expected.check_with("MIS", scene, [](RenderOptions& o) { o.mis = Switch::on; });
 }
 
 TEST_CASE("lights without size are direct light: it is not clamped") {

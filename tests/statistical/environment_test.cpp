@@ -164,24 +164,16 @@ TEST_CASE("outdoors the wavefront agrees with castRay", "[statistical]") {
 TEST_CASE("every form of the wavefront has the same mean outdoors", "[statistical]") {
   const Scene scene = standard_scene("kinds/sky_and_ground");
   const Expected expected(scene);
-  const auto check = [&](const std::string& what, const std::function<void(RenderOptions&)>& change) {
-    RenderOptions options = wavefront_options(4);
-    change(options);
-    expected.check(what, scene, options);
-  };
-  for (const std::string& isa : instruction_sets())
-    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
-      check(isa + (accel == AccelKind::list ? ", list" : ", tree"), [&](RenderOptions& o) {
-        o.isa = isa;
-        o.accel = accel;
-      });
-  check("generic list", [](RenderOptions& o) { o.generic = true; });
-  check("generic tree", [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
-  check("MIS", [](RenderOptions& o) { o.mis = Switch::on; });
-  check("independent numbers", [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
-  check("fixed roulette", [](RenderOptions& o) { o.rr = 0.7; });
+  expected.check_each_kernel(scene);
+  expected.check_with("generic list", scene, [](RenderOptions& o) { o.generic = true; });
+  expected.check_with("generic tree", scene,
+                      [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
+  expected.check_with("MIS", scene, [](RenderOptions& o) { o.mis = Switch::on; });
+  expected.check_with("independent numbers", scene,
+                      [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
+  expected.check_with("fixed roulette", scene, [](RenderOptions& o) { o.rr = 0.7; });
   for (const int suffixes : {1, 4, 16, 64})
-    check(std::to_string(suffixes) + " suffixes", [&](RenderOptions& o) {
+    expected.check_with(std::to_string(suffixes) + " suffixes", scene, [&](RenderOptions& o) {
       o.reuse = {false, 8, 8, suffixes};
     });
 }
@@ -209,22 +201,13 @@ TEST_CASE("under an image of a sky the wavefront agrees with castRay on metal", 
 TEST_CASE("every form of the wavefront has the same mean under an image of a sky", "[statistical]") {
   const Scene scene = under(standard_scene("kinds/sky_and_ground"), sunny_sky(), 30);
   const Expected expected(scene);
-  const auto check = [&](const std::string& what, const std::function<void(RenderOptions&)>& change) {
-    RenderOptions options = wavefront_options(4);
-    change(options);
-    expected.check(what, scene, options);
-  };
-  for (const std::string& isa : instruction_sets())
-    for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
-      check(isa + (accel == AccelKind::list ? ", list" : ", tree"), [&](RenderOptions& o) {
-        o.isa = isa;
-        o.accel = accel;
-      });
-  check("generic", [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
-  check("no MIS", [](RenderOptions& o) { o.mis = Switch::off; });
-  check("independent numbers", [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
+  expected.check_each_kernel(scene);
+  expected.check_with("generic", scene, [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
+  expected.check_with("no MIS", scene, [](RenderOptions& o) { o.mis = Switch::off; });
+  expected.check_with("independent numbers", scene,
+                      [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
   for (const int suffixes : {4, 64})
-    check(std::to_string(suffixes) + " suffixes", [&](RenderOptions& o) {
+    expected.check_with(std::to_string(suffixes) + " suffixes", scene, [&](RenderOptions& o) {
       o.reuse = {false, 8, 8, suffixes};
     });
 }

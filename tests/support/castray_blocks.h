@@ -2,10 +2,12 @@
 
 #include <catch2/catch.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "castray/render.h"
+#include "integrators.h"
 #include "render_blocks.h"
 #include "test_scenes.h"
 
@@ -44,6 +46,24 @@ struct Expected : ExpectedBlocks {
     CAPTURE(what, scores.rms, scores.largest);
     CHECK(scores.largest < score_limit(scores.count, 1e-4));
     CHECK(scores.rms < 1.25);
+  }
+
+  /// The wavefront with other options.
+  void check_with(const std::string& what, const Scene& scene,
+                  const std::function<void(RenderOptions&)>& change) const {
+    RenderOptions options = wavefront_options(4);
+    change(options);
+    check(what, scene, options);
+  }
+
+  /// The wavefront by each instruction set, over list and tree.
+  void check_each_kernel(const Scene& scene) const {
+    for (const std::string& isa : instruction_sets())
+      for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
+        check_with(isa + (accel == AccelKind::list ? ", list" : ", tree"), scene, [&](RenderOptions& o) {
+          o.isa = isa;
+          o.accel = accel;
+        });
   }
 };
 
