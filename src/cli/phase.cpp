@@ -9,6 +9,7 @@
 namespace castray::cli {
 
 Phase::Phase(ProgressMode mode, std::string what) : mode_(chosen_mode(mode)), what_(std::move(what)) {
+  if (mode_ == ProgressMode::json) fmt::print(stderr, "{}\n", json_text(what_, 0));
   if (mode_ != ProgressMode::off) thread_ = std::jthread([this](const std::stop_token& stop) { tell(stop); });
 }
 

@@ -10,8 +10,8 @@
 
 namespace castray::cli {
 
-/// Says on stderr what the program is at, as long as this object lives and once that takes more than a
-/// second.
+/// Says on stderr what the program is at, as long as this object lives: to people once that takes more than
+/// a second, to programs from the beginning.
 class Phase {
  public:
   Phase(ProgressMode mode, std::string what);

@@ -61,7 +61,7 @@ void ProgressDisplay::tell(const std::string& message) {
 void ProgressDisplay::finish(bool complete) {
   state_.elapsed = elapsed();
   if (complete) state_.fraction = 1, state_.left = 0;
-  if (shown_) show();
+  if (shown_ || mode_ == ProgressMode::json) show();
   if (line_open_) fmt::print(stderr, "\n");
   line_open_ = false;
 }

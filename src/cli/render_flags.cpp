@@ -110,7 +110,9 @@ const RenderFlag flags[] = {
      sampling, [](Request r, Text f, Text t) { r.part = parse_part(f, t); }, false},
     {"seed", "N", "other random numbers for each [0]", sampling,
      [](Request r, Text f, Text t) { r.options.seed = parse_whole(f, t, 0, most_whole); }},
-    {"replicates", "R", "share the samples out to R independent replicates, for 'castray compare --ztest'",
+    {"replicates", "R",
+     "share the samples out to R independent replicates, for 'castray compare --ztest'; not with "
+     "--checkpoint, --preview-every, --time-limit or --target-error",
      sampling, [](Request r, Text f, Text t) { r.replicates = parse_whole(f, t, 1, 4096); }, false},
     {"sampler", "sobol|independent", "Sobol's sequence or independent random numbers [sobol]", sampling,
      [](Request r, Text f, Text t) { r.options.sampler = parse_choice(f, t, sampler_names); }},

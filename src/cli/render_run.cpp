@@ -210,6 +210,7 @@ void RenderRun::write(const std::vector<fs::path>& outputs, const Film& film) co
 }
 
 void RenderRun::save(const Film& film) {
+  const Phase phase(mode(), "writing");
   if (checkpoint_) checkpoint_->save(film);
   write(request_.outputs, film);
 }

@@ -1,16 +1,18 @@
 #include <catch2/catch.hpp>
 
-#include <fcntl.h>
-#include <stdlib.h>
-#include <sys/ioctl.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <thread>
 
+#include "core/files.h"
 #include "endless_render.h"
 #include "run_castray.h"
+#include "screen.h"
+#include "terminal.h"
+#include "words.h"
 
 using namespace castray;
 using Catch::Contains;
@@ -32,40 +34,6 @@ TEST_CASE("progress is a bar, lines, or nothing") {
   CHECK_THAT(progress("off"), !Contains("elapsed"));
 }
 
-namespace {
-
-/// A terminal of some columns; what is written to it is collected until this object dies.
-class Terminal {
- public:
-  explicit Terminal(int columns) : master_(posix_openpt(O_RDWR | O_NOCTTY)) {
-    grantpt(master_);
-    unlockpt(master_);
-    slave_ = open(ptsname(master_), O_RDWR | O_NOCTTY);
-    const winsize size{24, static_cast<unsigned short>(columns), 0, 0};
-    ioctl(slave_, TIOCSWINSZ, &size);
-    reader_ = std::thread([this] {
-      char buffer[4096];
-      for (ssize_t n; (n = read(master_, buffer, sizeof buffer)) > 0;)
-        text_.append(buffer, static_cast<std::size_t>(n));
-    });
-  }
-  ~Terminal() { text(); }
-  std::string name() const { return ptsname(master_); }
-  /// All that was written, once its writers have ended.
-  const std::string& text() {
-    if (slave_ >= 0) close(slave_), slave_ = -1;
-    if (reader_.joinable()) reader_.join(), close(master_);
-    return text_;
-  }
-
- private:
-  int master_, slave_ = -1;
-  std::string text_;
-  std::thread reader_;
-};
-
-}  // namespace
-
 TEST_CASE("on a terminal the bar rewrites one line, however narrow, and ends at 100 %") {
   for (const int columns : {20, 40, 120}) {
     const TemporaryFolder folder;
@@ -76,14 +44,11 @@ TEST_CASE("on a terminal the bar rewrites one line, however narrow, and ends at 
     CHECK(run.exit_code == 0);
     const std::string all = terminal.text();
     const std::string bar = all.substr(0, all.find("\r\n"));
-    std::istringstream states(bar);
-    std::string state, last;
-    while (std::getline(states, state, '\r')) {
-      CHECK(static_cast<int>(state.size()) < columns + static_cast<int>(std::string("\x1b[K").size()));
-      if (!state.empty()) last = state;
-    }
+    Screen screen(columns, 24);
+    screen.show(bar);
     CAPTURE(all);
-    CHECK_THAT(last, Contains("100.0 %"));
+    CHECK_FALSE(screen.wrapped());
+    CHECK_THAT(screen.line(0), Contains("100.0 %"));
     CHECK(std::count(bar.begin(), bar.end(), '\r') >= 2);
   }
 }
@@ -105,23 +70,112 @@ TEST_CASE("lines come ever more seldom, and end at 100 %") {
   CHECK_THAT(last, Contains("100.0 %"));
 }
 
-TEST_CASE("progress json is an object a line, the last one of the whole") {
+namespace {
+
+/// A triangle's OBJ that the program waits for on its standard input, until that is written.
+class SlowScene {
+ public:
+  explicit SlowScene(const TemporaryFolder& folder) : file_(folder / "input") {
+    if (mkfifo(file_.c_str(), 0600) != 0) throw std::runtime_error("cannot make a pipe");
+  }
+  std::string file() const { return file_; }
+  void write() const { std::ofstream(file_) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"; }
+
+ private:
+  std::string file_;
+};
+
+std::vector<std::string> render_of_input(const std::string& mode) {
+  return {"render", "-", "--size", "8x8", "--spp", "1", "--progress", mode, "-o", "x.pfm"};
+}
+
+struct JsonProgress {
+  std::vector<std::string> phases;  ///< in their order, each once
+  std::vector<double> fractions;    ///< of the rendering
+};
+
+JsonProgress json_progress(const std::string& text) {
+  JsonProgress all;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.front() != '{') continue;
+    const auto object = nlohmann::json::parse(line);
+    const std::string phase = object.at("phase");
+    CHECK(object.at("elapsed_seconds") >= 0);
+    if (all.phases.empty() || all.phases.back() != phase) all.phases.push_back(phase);
+    if (phase == "rendering") all.fractions.push_back(object.at("fraction"));
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("progress json is an object a line, of each phase, the last of the render of the whole") {
   const TemporaryFolder folder;
   const RunResult run =
       run_castray({"render", CASTRAY_ROOT "/scenes/cornell_box.json", "--size", "32x32", "--time-limit",
                    "1.2", "--threads", "1", "--progress", "json", "-o", "x.pfm"},
                   folder.path());
-  std::istringstream lines(run.err);
-  std::string line;
-  double fraction = 0;
-  int count = 0;
-  while (std::getline(lines, line)) {
-    if (line.empty() || line.front() != '{') continue;
-    const auto object = nlohmann::json::parse(line);
-    CHECK(object["fraction"] >= fraction);
-    fraction = object["fraction"];
-    ++count;
+  const auto [phases, fractions] = json_progress(run.err);
+  CHECK(phases == std::vector<std::string>{"reading " CASTRAY_ROOT "/scenes/cornell_box.json",
+                                           "preparing 32 triangles", "rendering", "writing"});
+  CHECK(fractions.size() >= 2);
+  CHECK(std::is_sorted(fractions.begin(), fractions.end()));
+  CHECK(fractions.back() == 1);
+}
+
+TEST_CASE("each phase of a render of a moment is told to programs, and none to people") {
+  const TemporaryFolder folder;
+  write_file(folder / "one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto progress = [&](const char* mode) {
+    return run_castray({"render", "one.obj", "--size", "8x8", "--spp", "1", "--progress", mode},
+                       folder.path())
+        .err;
+  };
+  const auto [phases, fractions] = json_progress(progress("json"));
+  CHECK(phases ==
+        std::vector<std::string>{"reading one.obj", "preparing 1 triangles", "rendering", "writing"});
+  CHECK(fractions.back() == 1);
+  for (const char* mode : {"bar", "lines"})
+    CHECK_THAT(progress(mode), !Contains("reading") && !Contains("preparing"));
+}
+
+TEST_CASE("a scene that takes long to read is told in lines, and in a bar that fits") {
+  const TemporaryFolder folder;
+  const SlowScene scene(folder);
+  {
+    CastrayProcess process(render_of_input("lines"), {.folder = folder.path(), .input_file = scene.file()});
+    std::ofstream held(scene.file());
+    REQUIRE(process.wait_until([&] { return count_of(process.err(), "castray: reading -  0:0") == 1; }));
+    scene.write();
+    held.close();
+    CHECK(process.wait().exit_code == 0);
   }
-  CHECK(count >= 2);
-  CHECK(fraction == 1);
+  Terminal terminal(20);
+  CastrayProcess process(
+      render_of_input("bar"),
+      {.folder = folder.path(), .input_file = scene.file(), .error_file = terminal.name()});
+  std::ofstream held(scene.file());
+  REQUIRE(process.wait_until([&] { return count_of(terminal.text_so_far(), "\rcastray: reading") >= 2; }));
+  Screen screen(20, 24);
+  screen.show(terminal.text_so_far());
+  CHECK_FALSE(screen.wrapped());
+  CHECK_THAT(screen.line(0), Contains("castray: reading -"));
+  scene.write();
+  held.close();
+  CHECK(process.wait().exit_code == 0);
+}
+
+TEST_CASE("reading 8 million triangles and building their tree are told", "[long]") {
+  const TemporaryFolder folder;
+  std::ofstream obj(folder / "big.obj");
+  obj << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 8000000; ++i) obj << "f 1 2 3\n";
+  obj.close();
+  const std::string lines = run_castray({"render", "big.obj", "--size", "8x8", "--spp", "1", "--threads", "1",
+                                         "--progress", "lines"},
+                                        folder.path())
+                                .err;
+  CHECK_THAT(lines, Contains("castray: reading big.obj  0:0") &&
+                        Contains("castray: preparing 8000000 triangles  0:0"));
 }

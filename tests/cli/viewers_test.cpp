@@ -10,10 +10,15 @@
 #include "castray/film.h"
 #include "cli/terminal_preview.h"
 #include "core/files.h"
+#include "endless_render.h"
 #include "run_castray.h"
+#include "screen.h"
+#include "terminal.h"
+#include "words.h"
 
 using namespace castray;
 using Catch::Contains;
+using test::endless_render;
 
 namespace {
 
@@ -84,20 +89,45 @@ class Reader {
 
 RunResult render_to_tev(const TemporaryFolder& folder, const std::string& port) {
   return run_castray({"render", CASTRAY_ROOT "/scenes/cornell_box.json", "--size", "24x16", "--spp", "64",
-                      "--tev", "127.0.0.1:" + port, "-o", "x.film", "--reuse", "off"},
+                      "--tev", "127.0.0.1:" + port, "-o", "x.film", "--reconstruct", "on"},
                      folder.path());
+}
+
+/// The film's image, which its means alone are not.
+Image reconstructed(const std::filesystem::path& file) {
+  const Film film = read_film(file);
+  const Image image = image_of(film);
+  CHECK(image.pixels != film.image().pixels);
+  return image;
+}
+
+// What the preview writes to a terminal, and what a user does.
+constexpr const char *frame = "\x1b[H", *cleared = "\x1b[2J", *shell_again = "\x1b[0m\x1b[?25h\x1b[?1049l",
+                     *ctrl_c = "\x03";
+
+/// Without "\r", which terminals add.
+std::string with_plain_ends(std::string text) {
+  std::erase(text, '\r');
+  return text;
+}
+
+/// The terminal itself shows Ctrl-C as "^C", wherever the cursor is.
+std::string without_echo(std::string text) {
+  for (std::size_t at; (at = text.find("^C")) != std::string::npos;) text.erase(at, 2);
+  return text;
 }
 
 }  // namespace
 
-TEST_CASE("tev gets an image of the right size and channels, and in the end the whole picture") {
+TEST_CASE(
+    "tev gets an image of the right size and channels, and in the end the whole picture, reconstructed") {
   const TemporaryFolder folder;
   Listener tev;
   tev.start();
   const RunResult run = render_to_tev(folder, tev.port());
   CAPTURE(run.err);
   REQUIRE(run.exit_code == 0);
-  const Image expected = read_film(folder / "x.film").image();
+  const Image expected = reconstructed(folder / "x.film");
   std::string_view bytes = tev.bytes();
   int packets = 0;
   std::string_view last;
@@ -164,12 +194,85 @@ TEST_CASE("half blocks show two rows of pixels in one of characters, within the 
   CHECK_THAT(cli::half_blocks(stripes, {}, 2, 1), Contains("\x1b[38;2;188;188;188m"));
   for (const auto& [columns, rows] : {std::pair{80, 24}, std::pair{7, 3}, std::pair{1, 1}}) {
     const std::string text = cli::half_blocks(Image(300, 20), {}, columns, rows);
-    std::size_t lines = 0, characters = 0;
-    for (std::size_t at = 0; (at = text.find("\r\n", at)) != std::string::npos; ++at) ++lines;
-    for (std::size_t at = 0; (at = text.find("\u2580", at)) != std::string::npos; ++at) ++characters;
+    const std::size_t lines = count_of(text, "\r\n"), characters = count_of(text, "\u2580");
     CHECK(lines <= static_cast<std::size_t>(rows));
     CHECK(characters == lines * static_cast<std::size_t>(columns));
   }
+}
+
+TEST_CASE("a snapshot of the outputs is reconstructed") {
+  const TemporaryFolder folder;
+  CastrayProcess process(
+      endless_render({"--reconstruct", "on", "--progress", "lines", "-o", "x.pfm", "-o", "x.film"}),
+      {.folder = folder.path()});
+  process.wait_until([&] { return !process.err().empty(); });
+  process.send(SIGUSR1);
+  REQUIRE(process.wait_until([&] { return process.err().find("snapshot of") != std::string::npos; }));
+  CHECK(read_image(folder / "x.pfm").image.pixels == reconstructed(folder / "x.film").pixels);
+}
+
+TEST_CASE("the terminal shows the reconstructed image") {
+  const TemporaryFolder folder;
+  Terminal terminal(60, 20);
+  const RunResult run =
+      run_castray({"render", CASTRAY_ROOT "/scenes/cornell_box.json", "--size", "32x32", "--spp", "4",
+                   "--reconstruct", "on", "--preview", "terminal", "-o", "x.film"},
+                  {.folder = folder.path(), .error_file = terminal.name()});
+  CHECK(run.exit_code == 0);
+  const std::string expected = cli::half_blocks(reconstructed(folder / "x.film"), {}, 60, 19);
+  CHECK(with_plain_ends(terminal.text()).find(with_plain_ends(expected)) != std::string::npos);
+}
+
+TEST_CASE("the preview follows the terminal's size; Ctrl-C gives the screen back and saves the image") {
+  const TemporaryFolder folder;
+  Terminal terminal(40, 12);
+  CastrayProcess process(endless_render({"--preview", "terminal", "--threads", "1", "-o", "x.film"}),
+                         {.folder = folder.path(),
+                          .input_file = terminal.name(),
+                          .error_file = terminal.name(),
+                          .own_session = true});
+  const auto frames = [&] { return count_of(terminal.text_so_far(), frame); };
+  REQUIRE(process.wait_until([&] { return frames() >= 2; }));
+  terminal.resize(20, 10);
+  REQUIRE(process.wait_until([&] { return count_of(terminal.text_so_far(), cleared) >= 3; }));
+  const std::size_t then = frames();
+  REQUIRE(process.wait_until([&] { return frames() > then; }));
+  REQUIRE(terminal.type(ctrl_c));
+  CHECK(process.wait().exit_code == 130);
+  CHECK(read_film(folder / "x.film").samples_per_pixel() > 0);
+
+  const std::string text = without_echo(terminal.text());
+  const std::size_t resized = text.rfind(cleared), left = text.rfind(shell_again);
+  Screen first(40, 12), second(20, 10);
+  first.show(std::string_view(text).substr(0, resized));
+  second.show(std::string_view(text).substr(resized, left - resized));
+  for (const Screen* screen : {&first, &second}) {
+    CHECK_FALSE(screen->wrapped());
+    CHECK_FALSE(screen->scrolled());
+  }
+  CHECK(first.is_own());
+  CHECK_FALSE(first.shows_cursor());
+  for (int row = 0; row < 11; ++row) CHECK(first.width(row) == 22);  // a square of 22x22 pixels
+  for (int row = 0; row < 9; ++row) CHECK(second.width(row) == 18);
+  CHECK_THAT(second.line(9), Contains(" %"));
+  second.show(std::string_view(text).substr(left));
+  CHECK_FALSE(second.is_own());
+  CHECK(second.shows_cursor());
+}
+
+TEST_CASE("a second interrupt ends the program at once, and gives the screen back too") {
+  const TemporaryFolder folder;
+  Terminal terminal(40, 12);
+  CastrayProcess process(endless_render({"--preview", "terminal", "--threads", "1", "-o", "x.film"}),
+                         {.folder = folder.path(), .error_file = terminal.name()});
+  REQUIRE(process.wait_until([&] { return count_of(terminal.text_so_far(), frame) > 0; }));
+  for (const int signal : {SIGSTOP, SIGINT, SIGTERM, SIGCONT}) process.send(signal);
+  CHECK(process.wait().exit_code > 128);
+  CHECK(folder.names().empty());
+  Screen screen(40, 12);
+  screen.show(terminal.text());
+  CHECK_FALSE(screen.is_own());
+  CHECK(screen.shows_cursor());
 }
 
 TEST_CASE("a preview needs a terminal") {

@@ -38,6 +38,7 @@ struct RunSettings {
   unsigned seconds = 120;               ///< ends it with SIGALRM
   int signal = 0;                       ///< sent once it has written to stderr
   rlim_t largest_file = RLIM_INFINITY;  ///< in bytes
+  bool own_session = false;             ///< the first terminal that it opens controls it
 };
 
 inline std::string file_content(const std::filesystem::path& file) {
@@ -90,6 +91,7 @@ class CastrayProcess {
 
  private:
   [[noreturn]] void become(const std::vector<char*>& argv) const {
+    if (settings_.own_session && setsid() < 0) _exit(126);
     const auto redirect = [](int descriptor, const std::string& file, int flags) {
       const int opened = open(file.c_str(), flags, 0666);
       if (opened < 0 || dup2(opened, descriptor) < 0) _exit(126);
