@@ -22,6 +22,9 @@ struct Mesh {
   std::vector<Index3> triangle_colors;  ///< empty, or per triangle; Scene::no_index where it has none
 };
 
+/// Adds the triangles of `more` behind those of `all`. No index may grow beyond 32 bits.
+void append(Mesh& all, Mesh&& more);
+
 inline constexpr Index3 no_indices{Scene::no_index, Scene::no_index, Scene::no_index};
 
 }  // namespace castray

@@ -16,24 +16,6 @@ namespace castray {
 namespace {
 
 template <class T>
-void append(std::vector<T>& all, const std::vector<T>& more) {
-  all.insert(all.end(), more.begin(), more.end());
-}
-
-/// Appends indices moved by `offset`; where only one side has any, the other's triangles get none.
-void append_indices(std::vector<Index3>& all, std::size_t triangles, const std::vector<Index3>& more,
-                    std::size_t more_triangles, std::size_t offset) {
-  if (all.empty() && more.empty()) return;
-  all.resize(triangles, no_indices);
-  for (Index3 corners : more) {
-    for (std::uint32_t& i : corners)
-      if (i != Scene::no_index) i += static_cast<std::uint32_t>(offset);
-    all.push_back(corners);
-  }
-  all.resize(triangles + more_triangles, no_indices);
-}
-
-template <class T>
 void keep_marked(std::vector<T>& values, const std::vector<bool>& keep) {
   if (values.empty()) return;
   std::size_t kept = 0;
@@ -122,28 +104,38 @@ void SceneBuilder::ignore(const std::filesystem::path& file, std::string_view ke
     scene.ignored_keys.push_back(text);
 }
 
-void SceneBuilder::add(Mesh&& mesh, const std::filesystem::path& file) {
+std::size_t SceneBuilder::add_object() {
+  objects_.emplace_back();
+  return objects_.size() - 1;
+}
+
+void SceneBuilder::place(std::size_t object, const Transform& transform) {
+  instances_.push_back({object, transform});
+}
+
+void SceneBuilder::add(Mesh&& mesh, const std::filesystem::path& file, std::optional<std::size_t> object) {
   if (mesh.triangles.empty()) {
     warnings.add({file.string()}, "has no faces");
     if (!without_faces_) without_faces_ = file;
   }
-  if (mesh_.triangles.empty()) {
-    mesh_ = std::move(mesh);
-    return;
-  }
-  if (mesh_.positions.size() + mesh.positions.size() >= Scene::no_index ||
-      mesh_.triangles.size() + mesh.triangles.size() >= Scene::no_index)
+  join(object ? objects_[*object] : mesh_, std::move(mesh));
+}
+
+void SceneBuilder::join(Mesh& all, Mesh&& more) const {
+  if (all.positions.size() + more.positions.size() >= Scene::no_index ||
+      all.triangles.size() + more.triangles.size() >= Scene::no_index)
     throw InputError(SourcePlace{scene.file.string()}, "more than 2^32 - 2 vertices or triangles; use fewer");
-  const std::size_t triangles = mesh_.triangles.size(), more = mesh.triangles.size();
-  append_indices(mesh_.triangle_normals, triangles, mesh.triangle_normals, more, mesh_.normals.size());
-  append_indices(mesh_.triangle_uvs, triangles, mesh.triangle_uvs, more, mesh_.uvs.size());
-  append_indices(mesh_.triangle_colors, triangles, mesh.triangle_colors, more, mesh_.colors.size());
-  append_indices(mesh_.triangles, triangles, mesh.triangles, more, mesh_.positions.size());
-  append(mesh_.positions, mesh.positions);
-  append(mesh_.normals, mesh.normals);
-  append(mesh_.uvs, mesh.uvs);
-  append(mesh_.colors, mesh.colors);
-  append(mesh_.triangle_material, mesh.triangle_material);
+  append(all, std::move(more));
+}
+
+void SceneBuilder::expand_instances() {
+  for (const Placed& instance : instances_) {
+    Mesh copy = objects_[instance.object];
+    apply(instance.transform, copy);
+    join(mesh_, std::move(copy));
+  }
+  objects_.clear();
+  instances_.clear();
 }
 
 void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
@@ -247,6 +239,7 @@ void SceneBuilder::drop_flat() {
 }
 
 Scene SceneBuilder::finish() {
+  expand_instances();
   drop_unusable();
   drop_unused(mesh_.positions, mesh_.triangles);
   find_scene_space();

@@ -11,6 +11,7 @@
 #include "castray/scene.h"
 #include "scene/file_finder.h"
 #include "scene/mesh.h"
+#include "scene/transform.h"
 #include "scene/warning_list.h"
 
 namespace castray {
@@ -40,8 +41,13 @@ class SceneBuilder {
   /// Notes a key of a file that means nothing here.
   void ignore(const std::filesystem::path& file, std::string_view key);
 
-  /// Adds the mesh of a file, which may have no faces.
-  void add(Mesh&& mesh, const std::filesystem::path& file);
+  /// Adds the mesh of a file, which may have no faces; with `object`, to that.
+  void add(Mesh&& mesh, const std::filesystem::path& file, std::optional<std::size_t> object = {});
+
+  /// Adds an object, which is where instances place it; returns its index.
+  std::size_t add_object();
+  /// Adds an instance of an object.
+  void place(std::size_t object, const Transform& transform);
 
   /// Drops degenerate triangles and fills in geometry, center, unit, lights and warnings. Throws InputError
   /// where no triangle is left.
@@ -56,7 +62,18 @@ class SceneBuilder {
   void drop_flat();  ///< of those that rounding has made flat, too
   void keep_triangles(const std::vector<bool>& keep);
 
+  /// An object and where it is.
+  struct Placed {
+    std::size_t object;
+    Transform transform;
+  };
+
+  void join(Mesh& all, Mesh&& more) const;
+  void expand_instances();  ///< into meshes of their own
+
   Mesh mesh_;
+  std::vector<Mesh> objects_;
+  std::vector<Placed> instances_;
   std::optional<std::filesystem::path> without_faces_;  ///< the first such file
   std::map<std::string, int> textures_;                 ///< by what they are made of
 };

@@ -19,7 +19,7 @@
 #include "scene/obj_mesh.h"
 #include "scene/ply_file.h"
 #include "scene/scene_builder.h"
-#include "scene/transform.h"
+#include "scene/transform_reader.h"
 
 namespace castray {
 
@@ -49,6 +49,17 @@ std::string flag_value(const JsonNode& node, std::string_view name) {
   }
 }
 
+/// What to say where no member of "`kind`s" has this name.
+template <class Value>
+std::string not_found(std::string_view kind, const std::string& name,
+                      const std::map<std::string, Value>& members) {
+  std::vector<std::string_view> known;
+  for (const auto& member : members) known.push_back(member.first);
+  return fmt::format(
+      "{} '{}' not found{}", kind, printable(name),
+      known.empty() ? fmt::format("; the scene has no \"{}s\"", kind) : suggestion(name, known));
+}
+
 class SceneFileReader {
  public:
   explicit SceneFileReader(const std::filesystem::path& file) : file_(file) {
@@ -68,7 +79,7 @@ class SceneFileReader {
         builder_.scene.delta_lights.push_back(read_delta_light(light));
     const JsonNode* camera = scene.find("camera");
     if (camera) builder_.scene.camera = read_camera(*camera);
-    read_meshes(read_array(scene.require("meshes"), "\"meshes\""));
+    read_geometry(scene);
     Scene result = builder_.finish();
     result.has_camera = camera;
     if (camera)
@@ -106,35 +117,10 @@ class SceneFileReader {
       material_indices_[member.key] = builder_.add_material(read_material(member, file_, builder_));
   }
 
-  Transform read_step(const JsonNode& node) {
-    const ObjectReader step(node, "a transform step", keys_of("transform_step"));
-    if (node.children.size() != 1)
-      throw InputError(node.place, "a transform step has one key: \"scale\", \"rotate\" or \"translate\"");
-    if (const JsonNode* scale = step.find("scale")) {
-      const bool uniform = scale->type == JsonNode::Type::number;
-      const Vec3d factors =
-          uniform ? Vec3d(read_number(*scale, "\"scale\"")) : read_vector(*scale, "\"scale\"");
-      if (factors.x == 0 || factors.y == 0 || factors.z == 0)
-        throw InputError(scale->place, "\"scale\" must not be 0: nothing would be left");
-      return Transform::scale(factors);
-    }
-    if (const JsonNode* rotate = step.find("rotate")) {
-      const std::vector<double> numbers = read_numbers(*rotate, "\"rotate\"", 4);
-      const Vec3d axis{numbers[0], numbers[1], numbers[2]};
-      if (axis == Vec3d{}) throw InputError(rotate->place, "\"rotate\" needs an axis that is not (0,0,0)");
-      return Transform::rotate(axis, numbers[3]);
-    }
-    return Transform::translate(read_vector(step.require("translate"), "\"translate\""));
-  }
-
   std::uint16_t find_material(const JsonNode& node) {
     const auto found = material_indices_.find(read_string(node, "\"material\""));
     if (found != material_indices_.end()) return found->second;
-    std::vector<std::string_view> known;
-    for (const auto& [name, index] : material_indices_) known.push_back(name);
-    throw InputError(node.place, fmt::format("material '{}' not found{}", printable(node.text),
-                                             known.empty() ? "; the scene has no \"materials\""
-                                                           : suggestion(node.text, known)));
+    throw InputError(node.place, not_found("material", node.text, material_indices_));
   }
 
   MeshOptions read_mesh_options(const ObjectReader& reader) {
@@ -165,19 +151,52 @@ class SceneFileReader {
                     printable(path.string())));
   }
 
-  void read_meshes(const std::vector<JsonNode>& nodes) {
-    // A file is read once, and kept until its last use.
-    std::map<std::filesystem::path, MeshUse> files;
-    std::vector<MeshUse*> uses;
-    for (const JsonNode& node : nodes) {
+  /// Meshes and, where they are placed, objects.
+  void read_geometry(const ObjectReader& scene) {
+    const JsonNode* instances = scene.find("instances");
+    if (const JsonNode* objects = scene.find("objects")) list_objects(*objects);
+    if (instances)
+      for (const JsonNode& node : read_array(*instances, "\"instances\"")) read_instance(node);
+    if (const JsonNode* meshes = instances ? scene.find("meshes") : &scene.require("meshes"))
+      list_meshes(*meshes, "\"meshes\"", {});
+    for (const auto& [name, object] : objects_)
+      if (object.index)
+        list_meshes(*object.node, fmt::format("object '{}'", printable(name)), object.index);
+      else
+        builder_.warnings.add(object.node->key_place,
+                              fmt::format("object '{}' has no instance", printable(name)), Harm::none);
+    for (const MeshNode& mesh : meshes_) read_mesh(mesh);
+  }
+
+  void list_objects(const JsonNode& node) {
+    if (node.type != JsonNode::Type::object)
+      throw InputError(node.place, fmt::format("\"objects\" must be an object, not {}", node.type_name()));
+    for (const JsonNode& member : node.children) objects_[member.key] = {&member, {}};
+  }
+
+  void read_instance(const JsonNode& node) {
+    const ObjectReader reader(node, "an instance", keys_of("instance"));
+    const JsonNode& name = reader.require("object");
+    const auto found = objects_.find(read_string(name, "\"object\""));
+    if (found == objects_.end()) throw InputError(name.place, not_found("object", name.text, objects_));
+    if (!found->second.index) found->second.index = builder_.add_object();
+    const JsonNode *each = reader.find("transforms"), *steps = reader.find("transform");
+    const Transform all = steps ? read_transform(*steps) : Transform{};
+    const std::vector<Transform> places = each ? read_transforms(*each, file_) : std::vector<Transform>(1);
+    for (const Transform& place : places) builder_.place(*found->second.index, place.then(all));
+  }
+
+  /// Lists the meshes of the scene itself or of an object. A file is read once, and kept until its last use.
+  void list_meshes(const JsonNode& nodes, std::string_view name, std::optional<std::size_t> object) {
+    for (const JsonNode& node : read_array(nodes, name)) {
       const ObjectReader mesh(node, "a mesh", keys_of("mesh"));
       const std::filesystem::path path = mesh_path(mesh);
-      uses.push_back(&files.try_emplace(path).first->second);
-      uses.back()->path = path;
-      uses.back()->read = mesh.find("ply") ? read_ply : read_obj;
-      ++uses.back()->left;
+      MeshUse& use = files_.try_emplace(path).first->second;
+      use.path = path;
+      use.read = mesh.find("ply") ? read_ply : read_obj;
+      ++use.left;
+      meshes_.push_back({&node, &use, object});
     }
-    for (std::size_t i = 0; i < nodes.size(); ++i) read_mesh(nodes[i], *uses[i]);
   }
 
   struct MeshUse {
@@ -194,23 +213,38 @@ class SceneFileReader {
     }
   };
 
-  void read_mesh(const JsonNode& node, MeshUse& use) {
-    const ObjectReader reader(node, "a mesh", keys_of("mesh"));
+  /// A mesh of the scene itself or of an object.
+  struct MeshNode {
+    const JsonNode* node;
+    MeshUse* use;
+    std::optional<std::size_t> object;
+  };
+
+  void read_mesh(const MeshNode& mesh_node) {
+    MeshUse& use = *mesh_node.use;
+    const ObjectReader reader(*mesh_node.node, "a mesh", keys_of("mesh"));
     const MeshOptions options = read_mesh_options(reader);
-    Transform transform;
-    if (const JsonNode* steps = reader.find("transform"))
-      for (const JsonNode& step : read_array(*steps, "\"transform\""))
-        transform = transform.then(read_step(step));
+    const JsonNode* steps = reader.find("transform");
+    const Transform transform = steps ? read_transform(*steps) : Transform{};
     if (!use.file) use.file = use.read(use.path, builder_.warnings);
     Mesh mesh = make_mesh(use.take(), options, materials_);
-    if (reader.find("transform")) apply(transform, mesh);
-    builder_.add(std::move(mesh), use.path);
+    if (steps) apply(transform, mesh);
+    builder_.add(std::move(mesh), use.path, mesh_node.object);
   }
 
   std::filesystem::path file_;
   SceneBuilder builder_;
   ObjMaterials materials_{builder_};
   std::map<std::string, std::uint16_t> material_indices_;
+
+  /// A member of "objects"; with an index once an instance names it.
+  struct ObjectNode {
+    const JsonNode* node;
+    std::optional<std::size_t> index;
+  };
+  std::map<std::string, ObjectNode> objects_;
+  std::map<std::filesystem::path, MeshUse> files_;
+  std::vector<MeshNode> meshes_;
 };
 
 }  // namespace
@@ -218,7 +252,9 @@ class SceneFileReader {
 const std::vector<SceneSection>& scene_sections() {
   static const std::vector<SceneSection> sections = [] {
     std::vector<SceneSection> all = {
-        {"scene", {"$schema", "camera", "image", "render", "materials", "meshes", "lights", "environment"}},
+        {"scene",
+         {"$schema", "camera", "image", "render", "materials", "meshes", "objects", "instances", "lights",
+          "environment"}},
         {"camera", camera_keys},
         {"light", light_keys},
         {"lens", lens_keys},
@@ -228,7 +264,8 @@ const std::vector<SceneSection>& scene_sections() {
         {"gradient", gradient_keys},
         {"map", map_keys()},
         {"mesh", {"obj", "ply", "material", "transform", "normals", "crease_angle"}},
-        {"transform_step", {"scale", "rotate", "translate"}},
+        {"transform_step", transform_step_keys},
+        {"instance", {"object", "transform", "transforms"}},
     };
     for (const MaterialDescriptor* material : material_descriptors()) {
       all.push_back({material->name, {"type"}});

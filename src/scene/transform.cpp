@@ -1,5 +1,6 @@
 #include "scene/transform.h"
 
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -12,6 +13,12 @@ void turn_round(std::vector<Index3>& triangles) {
 }
 
 }  // namespace
+
+bool Transform::is_invertible() const {
+  constexpr double rounding = 1e-13;
+  const double volume = std::abs(determinant()), most = length(rows[0]) * length(rows[1]) * length(rows[2]);
+  return volume > rounding * most && std::isfinite(most) && is_finite(translation);
+}
 
 Transform Transform::then(const Transform& next) const {
   Transform result;

@@ -13,6 +13,8 @@ struct Transform {
   Vec3d linear(const Vec3d& v) const { return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)}; }
   Vec3d point(const Vec3d& p) const { return linear(p) + translation; }
   double determinant() const { return dot(rows[0], cross(rows[1], rows[2])); }
+  /// Whether it is finite and maps space onto space, beyond what rounding leaves of a matrix that does not.
+  bool is_invertible() const;
 
   /// First this, then `next`.
   Transform then(const Transform& next) const;

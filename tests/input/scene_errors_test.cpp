@@ -40,6 +40,16 @@ Case in_mesh(const std::string& what, const std::string& mesh, const std::string
   return {what, {scene_with_mesh(mesh), good_obj}, message};
 }
 
+Case in_instances(const std::string& what, const std::string& instance, const std::string& transforms,
+                  const std::string& message) {
+  return {what,
+          {{"s.json", "{\n  \"objects\": { \"tree\": [ { \"obj\": \"good.obj\" } ] },\n  \"instances\": [ " +
+                          instance + " ]\n}\n"},
+           good_obj,
+           {"t.txt", transforms}},
+          message};
+}
+
 Case in_obj(const std::string& what, const std::string& obj, const std::string& message) {
   return {what, {{"o.obj", obj}}, message};
 }
@@ -226,9 +236,30 @@ const std::vector<Case> cases = {
             "s.json:4:53: \"rotate\" must be an array of 4 numbers, but has 3"),
     in_mesh("two keys in one step",
             R"({ "obj": "good.obj", "transform": [ { "scale": 1, "translate": [0,0,0] } ] })",
-            "s.json:4:41: a transform step has one key: \"scale\", \"rotate\" or \"translate\""),
+            "s.json:4:41: a transform step has one key: \"scale\", \"rotate\", \"translate\" or "
+            "\"matrix\""),
     in_mesh("transform is an object", R"({ "obj": "good.obj", "transform": { "scale": 1 } })",
             "s.json:4:39: \"transform\" must be an array, not an object"),
+    in_mesh("flat matrix",
+            R"({ "obj": "good.obj", "transform": [ { "matrix": [1,2,3,0, 2,4,6,0, 0,0,1,0] } ] })",
+            "s.json:4:53: the matrix flattens space, or is not finite: it needs an inverse"),
+    in_instances("instance without object", R"({ "transforms": "t.txt" })", "",
+                 "s.json:3:18: an instance needs the key 'object'"),
+    in_instances("unknown object", R"({ "object": "tre" })", "",
+                 "s.json:3:30: object 'tre' not found; did you mean 'tree'?"),
+    in_instances("no file of transforms", R"({ "object": "tree", "transforms": "u.txt" })", "",
+                 "s.json:3:52: no such file: u.txt"),
+    in_instances("short transform", R"({ "object": "tree", "transforms": [[1,0,0]] })", "",
+                 "s.json:3:53: \"transforms\"[0] must be an array of 12 numbers, but has 3"),
+    in_instances("empty file of transforms", R"({ "object": "tree", "transforms": "t.txt" })", "# none\n",
+                 "t.txt: no transforms: it needs 12 numbers a line"),
+    in_instances("short line of transforms", R"({ "object": "tree", "transforms": "t.txt" })", "# a\n1 0 0\n",
+                 "t.txt:2:6: '12 numbers of a transform' needs more numbers"),
+    in_instances("long line of transforms", R"({ "object": "tree", "transforms": "t.txt" })",
+                 "1 0 0 0 0 1 0 0 0 0 1 0 9\n", "t.txt:1:25: more than the 12 numbers of a transform"),
+    in_instances("flat line of transforms", R"({ "object": "tree", "transforms": "t.txt" })",
+                 "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 1 1 0 0\n",
+                 "t.txt:2: the matrix flattens space, or is not finite: it needs an inverse"),
     in_mesh("crease_angle of flat normals", R"({ "obj": "good.obj", "normals": "face", "crease_angle": 30 })",
             "s.json:4:45: \"crease_angle\" goes with \"normals\": \"smooth\" only"),
     in_mesh("unknown kind of normals", R"({ "obj": "good.obj", "normals": "soft" })",

@@ -1,0 +1,44 @@
+#include "scene/mesh.h"
+
+namespace castray {
+
+namespace {
+
+template <class T>
+void append_values(std::vector<T>& all, const std::vector<T>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Appends indices moved by `offset`; where only one side has any, the other's triangles get none.
+void append_indices(std::vector<Index3>& all, std::size_t triangles, const std::vector<Index3>& more,
+                    std::size_t more_triangles, std::size_t offset) {
+  if (all.empty() && more.empty()) return;
+  all.resize(triangles, no_indices);
+  for (Index3 corners : more) {
+    for (std::uint32_t& i : corners)
+      if (i != Scene::no_index) i += static_cast<std::uint32_t>(offset);
+    all.push_back(corners);
+  }
+  all.resize(triangles + more_triangles, no_indices);
+}
+
+}  // namespace
+
+void append(Mesh& all, Mesh&& more) {
+  if (all.triangles.empty()) {
+    all = std::move(more);
+    return;
+  }
+  const std::size_t triangles = all.triangles.size(), added = more.triangles.size();
+  append_indices(all.triangle_normals, triangles, more.triangle_normals, added, all.normals.size());
+  append_indices(all.triangle_uvs, triangles, more.triangle_uvs, added, all.uvs.size());
+  append_indices(all.triangle_colors, triangles, more.triangle_colors, added, all.colors.size());
+  append_indices(all.triangles, triangles, more.triangles, added, all.positions.size());
+  append_values(all.positions, more.positions);
+  append_values(all.normals, more.normals);
+  append_values(all.uvs, more.uvs);
+  append_values(all.colors, more.colors);
+  append_values(all.triangle_material, more.triangle_material);
+}
+
+}  // namespace castray
