@@ -11,14 +11,12 @@
 #include "castray/error.h"
 #include "cli/values.h"
 #include "plan/job.h"
+#include "plan/memory_need.h"
 #include "plan/plan.h"
 
 namespace castray::cli {
 
 namespace {
-
-/// References and nodes while a tree is built, a few per cent of pre-split triangles among them.
-constexpr std::uint64_t tree_bytes_of_a_triangle = 240;
 
 std::uint64_t resident_bytes() {
   std::ifstream in("/proc/self/statm");
@@ -49,8 +47,8 @@ std::string bytes_text(std::uint64_t bytes) {
 }
 
 std::string MemoryNeed::text() const {
-  return fmt::format("{} with the scene read, {} at most for the tree, {} for the film ({} a pixel)",
-                     bytes_text(scene), bytes_text(tree), bytes_text(film()), film_pixel);
+  return fmt::format("{} with the scene read, {} for its tree and lights, {} for the film ({} a pixel)",
+                     bytes_text(scene), bytes_text(preparation), bytes_text(film()), film_pixel);
 }
 
 MemoryNeed memory_need(const Scene& scene, const RenderOptions& options) {
@@ -58,7 +56,7 @@ MemoryNeed memory_need(const Scene& scene, const RenderOptions& options) {
   const Plan plan = make_plan(scene, options, window);
   MemoryNeed need;
   need.scene = resident_bytes();
-  need.tree = plan.list ? 0 : tree_bytes_of_a_triangle * scene.triangles.size();
+  need.preparation = bytes_to_prepare(scene, plan, options.integrator);
   need.differences = options.integrator != Integrator::reference && plan.suffixes > 0 &&
                      options.reconstruct != Switch::off && !options.target_error;
   Film film({1, 1, 0, 0, 1, 1}, 1);

@@ -19,14 +19,14 @@ std::uint64_t share_of_memory();
 
 /// What a render is known to take before it does, in bytes.
 struct MemoryNeed {
-  std::uint64_t scene = 0;     ///< resident: the program, triangles, textures
-  std::uint64_t tree = 0;      ///< at most, while it is built
-  std::size_t film_pixel = 0;  ///< of a pixel of the film: sums, splats, differences
+  std::uint64_t scene = 0;        ///< resident: the program, triangles, textures
+  std::uint64_t preparation = 0;  ///< about, at most: tree and lights while they are built
+  std::size_t film_pixel = 0;     ///< of a pixel of the film: sums, splats, differences
   std::uint64_t pixels = 0;
   bool differences = false;  ///< are kept by the film
   int margin() const { return differences ? reconstruction_margin : 0; }
   std::uint64_t film() const { return film_pixel * pixels; }
-  std::uint64_t all() const { return scene + tree + film(); }
+  std::uint64_t all() const { return scene + preparation + film(); }
   std::string text() const;
 };
 MemoryNeed memory_need(const Scene& scene, const RenderOptions& options);

@@ -32,7 +32,7 @@ bool is_as_asked(const RenderRequest& request, Stopped stopped) {
 /// Where the whole film does not fit, and how many rows at a time do.
 std::optional<int> rows_at_a_time(const RenderRequest& request, const MemoryNeed& need, int width) {
   const std::uint64_t most = request.memory_limit.value_or(share_of_memory());
-  const std::uint64_t others = need.scene + need.tree;
+  const std::uint64_t others = need.scene + need.preparation;
   if (need.all() <= most) return std::nullopt;
   const std::string flag = goes_with_no_bands(request);
   if (!request.memory_limit && (others >= most || !flag.empty()))

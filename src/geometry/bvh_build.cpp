@@ -100,7 +100,7 @@ class Builder {
   void build_top(const Range& range, Subtree& out) {
     out.box = range.box;
     if (range.size() <= subtree_size) {
-      out.pairs.reserve(range.size() / 2);
+      out.pairs.reserve(range.size() / 4);
       out.root = build_serial(range, out);
       out.pair_count = out.pairs.size();
       return;

@@ -1,6 +1,7 @@
 #include "geometry/presplit.h"
 
 #include <bit>
+#include <numeric>
 
 namespace castray {
 namespace {
@@ -164,6 +165,8 @@ std::vector<PrimRef> presplit(const MeshView& mesh, double share, int threads) {
     }
   }
   std::vector<PrimRef> refs;
+  refs.reserve(std::accumulate(parts.begin(), parts.end(), std::size_t{0},
+                               [](std::size_t sum, auto& part) { return sum + part.size(); }));
   for (std::vector<PrimRef>& part : parts) {
     refs.insert(refs.end(), part.begin(), part.end());
     part = {};
