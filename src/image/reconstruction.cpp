@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "core/threads.h"
+#include "image/correction_share.h"
 #include "image/pair_weights.h"
+#include "image/row_means.h"
 
 namespace castray {
 
@@ -14,27 +16,6 @@ namespace {
 using Term = DifferenceSums::Term;
 
 constexpr int rows_of_a_strip = 32;
-
-/// The means of a row's pixels, or differences, in three channels.
-struct RowMeans {
-  std::vector<double> channel[3];
-  std::vector<double> per_sum;  ///< the unit over the count, 0 without samples
-
-  explicit RowMeans(int width) : per_sum(static_cast<std::size_t>(width)) {
-    for (auto& values : channel) values.resize(static_cast<std::size_t>(width));
-  }
-
-  void read(const DifferenceSums& sums, int half, int y, Term term) {
-    const std::uint32_t* count = sums.counts(half, y, term);
-    const double unit = sums.radiance_unit();
-    for (std::size_t x = 0; x < per_sum.size(); ++x) per_sum[x] = count[x] > 0 ? unit / count[x] : 0;
-    for (int c = 0; c < 3; ++c) {
-      const std::int64_t* sum = sums.sums(half, y, term, c);
-      double* out = channel[c].data();
-      for (std::size_t x = 0; x < per_sum.size(); ++x) out[x] = static_cast<double>(sum[x]) * per_sum[x];
-    }
-  }
-};
 
 /// The right side of the equations for corrections: what differences say of neighbours, less what means say.
 class RightSide {
@@ -132,15 +113,17 @@ Image image_of(const Film& film, int threads) {
   if (!sums.kept()) return image;
   if (threads <= 0) threads = available_threads();
   const Window& window = film.window();
+  const PixelPlanes both[] = {corrections(sums, 0, 1, threads), corrections(sums, 1, 0, threads)};
+  const auto share = static_cast<float>(share_of_corrections(sums, both, threads));
   for (int half = 0; half < DifferenceSums::halves; ++half) {
-    const PixelPlanes correction = corrections(sums, half, 1 - half, threads);
+    const PixelPlanes& correction = both[half];
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int y = 0; y < film.height(); ++y) {
       const std::uint32_t* count = sums.counts(half, y, Term::own);
       for (int x = 0; x < film.width(); ++x) {
         const auto all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
         const Vec3f more(correction[0].row(y)[x], correction[1].row(y)[x], correction[2].row(y)[x]);
-        if (all > 0) image.at(x, y) += more * (static_cast<float>(count[x]) / all);
+        if (all > 0) image.at(x, y) += more * (share * static_cast<float>(count[x]) / all);
       }
     }
   }

@@ -21,13 +21,17 @@ constexpr Window window{40, 30, 9, 5, 31, 22};
 
 TiledFilm film_of(std::uint32_t first, std::uint32_t count, const Window& shown = window) {
   TiledFilm film(shown);
-  for (std::uint32_t s = first; s < first + count; ++s)
-    film.add_sample(s, [s](int x, int y) {
-      const float u =
-          static_cast<float>(hash32(hash_combine(hash_combine(s, std::uint32_t(x)), std::uint32_t(y)))) *
-          0x1p-32f;
-      return Vec3f(u * 4, u * u, 0.1f);
+  for (std::uint32_t s = first; s < first + count; ++s) {
+    const Tiles tiles(shown, s);
+    film.add_sample(s, [&](int x, int y) {
+      const auto uniform = [s](int i, int j) {
+        return static_cast<float>(hash32(hash_combine(hash_combine(s, std::uint32_t(i)), std::uint32_t(j)))) *
+               0x1p-32f;
+      };
+      const float own = uniform(x, y), of_tile = uniform((x + tiles.shift_x) / 8, (y + tiles.shift_y) / 8);
+      return Vec3f(own * 0.1f + of_tile * 4, own * own, 0.1f);
     });
+  }
   film.samples = {{first, count}};
   return film;
 }
