@@ -152,6 +152,9 @@ class Film {
 
   friend struct FilmFile;  // reads and writes the sums as they are
 
+  /// Of what `samples` say of all pixels, those beyond `counted` and `nonfinite_samples`.
+  std::uint64_t missing_samples(std::uint64_t counted) const;
+
   /// The mean of splats, from sums over pixels and the sum of their light paths.
   Vec3d splats_over_paths(const Vec3d& splats, double paths) const;
 
@@ -200,6 +203,9 @@ Film read_film_header(const std::filesystem::path& file);
 /// of its samples were not finite is not known of them. Throws InputError where they end early; the checksum
 /// is that of `check_film_file`.
 Film read_film_rows(const std::filesystem::path& file, int y0, int y1);
+
+/// `Film::missing_samples` of a file of which a little at a time is in memory.
+std::uint64_t missing_samples(const std::filesystem::path& file);
 
 /// Throws InputError unless the checksum of the file, which is never in memory as a whole, is right.
 void check_film_file(const std::filesystem::path& file);

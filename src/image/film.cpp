@@ -293,12 +293,15 @@ double Film::samples_per_pixel() const {
   return static_cast<double>(counted + nonfinite_samples) / static_cast<double>(counts_.size());
 }
 
-std::uint64_t Film::missing_samples() const {
+std::uint64_t Film::missing_samples(std::uint64_t counted) const {
   std::uint64_t wanted = 0;
   for (const SampleRange& range : samples) wanted += range.count;
-  const std::uint64_t taken =
-      std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}) + nonfinite_samples;
-  return wanted * counts_.size() - std::min(taken, wanted * counts_.size());
+  wanted *= static_cast<std::uint64_t>(width()) * static_cast<std::uint64_t>(height());
+  return wanted - std::min(counted + nonfinite_samples, wanted);
+}
+
+std::uint64_t Film::missing_samples() const {
+  return missing_samples(std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}));
 }
 
 std::size_t bytes_of_pixel(const Film& film) {

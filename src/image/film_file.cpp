@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <ostream>
 
@@ -121,6 +122,25 @@ struct FilmFile {
     if (!in) throw InputError({file.string()}, "is truncated");
     film.nonfinite_samples = 0;
     return film;
+  }
+
+  static std::uint64_t missing_samples(const std::filesystem::path& file) {
+    const std::string head = read_head(file, magic.size(), '\n');
+    std::size_t data_begin = 0;
+    const Film film = parse_head(file.string(), head, data_begin);
+    std::size_t left = static_cast<std::size_t>(film.width()) * static_cast<std::size_t>(film.height());
+    std::ifstream in(file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(data_begin + left * 3 * sizeof(Film::Sum)));
+    std::vector<std::uint32_t> counts(std::min(left, std::size_t{1} << 16));
+    std::uint64_t counted = 0;
+    for (; left > 0 && in; left -= counts.size()) {
+      counts.resize(std::min(left, counts.size()));
+      in.read(reinterpret_cast<char*>(counts.data()),
+              static_cast<std::streamsize>(counts.size() * sizeof counts[0]));
+      counted = std::accumulate(counts.begin(), counts.end(), counted);
+    }
+    if (!in) throw InputError({file.string()}, "is truncated");
+    return film.missing_samples(counted);
   }
 
   static Film parse(const std::string& name, std::string_view bytes) {
@@ -242,6 +262,8 @@ Film read_film(const std::filesystem::path& file) {
 Film read_film_rows(const std::filesystem::path& file, int y0, int y1) {
   return FilmFile::read_rows(file, y0, y1);
 }
+
+std::uint64_t missing_samples(const std::filesystem::path& file) { return FilmFile::missing_samples(file); }
 
 void check_film_file(const std::filesystem::path& file) {
   read_film_header(file);

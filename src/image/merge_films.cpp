@@ -160,14 +160,6 @@ void note_missing(std::vector<std::string>& missing, std::uint64_t samples, cons
     missing.push_back(fmt::format("{} samples of {}, which was stopped early", samples, file.string()));
 }
 
-/// How many samples the film lacks, row by row.
-std::uint64_t missing_samples(const fs::path& file, const Film& header) {
-  std::uint64_t missing = 0;
-  for (int y = header.window().y0; y < header.window().y1; ++y)
-    missing += read_film_rows(file, y, y + 1).missing_samples();
-  return missing - std::min(missing, header.nonfinite_samples);
-}
-
 }  // namespace
 
 MergedFilm merge_films(const std::vector<fs::path>& files, const std::function<void(std::size_t)>& progress) {
@@ -197,7 +189,7 @@ MergedRows::MergedRows(const std::vector<fs::path>& files) {
       throw InputError({file.string()},
                        "keeps replicates, which are merged as a whole only; raise --memory-limit");
     check_film_file(file);
-    if (header.planned) note_missing(missing_, missing_samples(file, header), file);
+    if (header.planned) note_missing(missing_, missing_samples(file), file);
     parts_.push_back({file, header.window()});
   }
 }

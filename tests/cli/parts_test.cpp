@@ -165,10 +165,14 @@ TEST_CASE("a part that was stopped early is missing") {
   stopped.samples = {{4, 4}};
   stopped.add(1, 1, {1, 1, 1});
   write_film(folder / "p1.film", stopped);
-  const RunResult result = merge(folder, {"p0.film", "p1.film", "-o", "m.film"});
-  CHECK(result.exit_code == 2);
-  CHECK_THAT(result.err,
-             Contains(fmt::format("{} samples of p1.film, which was stopped early", 40 * 32 * 4 - 1)));
+  for (const Words& way : {Words{"-o", "m.film"}, {"-o", "m.pfm", "--memory-limit", "4K"}}) {
+    Words words{"p0.film", "p1.film"};
+    words.insert(words.end(), way.begin(), way.end());
+    const RunResult result = merge(folder, words);
+    CHECK(result.exit_code == 2);
+    CHECK_THAT(result.err,
+               Contains(fmt::format("{} samples of p1.film, which was stopped early", 40 * 32 * 4 - 1)));
+  }
 }
 
 TEST_CASE("crops of one render merge to its bytes") {
