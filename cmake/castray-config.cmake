@@ -1,5 +1,5 @@
 include(CMakeFindDependencyMacro)
-foreach(package OpenMP fmt OpenEXR PNG ZLIB)
+foreach(package OpenMP fmt OpenEXR PNG ZLIB TinyGLTF)
   find_dependency(${package})
 endforeach()
 include(${CMAKE_CURRENT_LIST_DIR}/castray-targets.cmake)

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "castray/vec.h"
@@ -114,6 +115,12 @@ ImageFile read_image(const std::filesystem::path& file, const std::string& layer
 
 /// The same pixels, as the file stores them: for textures, which keep bytes as bytes.
 Raster read_raster(const std::filesystem::path& file);
+
+/// The same of the bytes that are the content of `file`, whose name need not tell the format.
+Raster parse_raster(const std::filesystem::path& file, std::string_view bytes);
+
+/// The suffix of the format that an image file's first bytes show, ".png"; empty where they show none.
+std::string suffix_of_image(std::string_view bytes);
 
 /// Linear radiance: what `file` holds, decoded by `tone` where it is encoded.
 Image decoded(const ImageFile& file, const ToneCurve& tone);

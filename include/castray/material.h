@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ namespace castray {
 /// or in proportion, as data are (roughness, normals, coverage). Alpha is always linear.
 enum class ColorSpace : std::uint8_t { srgb, linear };
 
+/// Where a texture comes from.
+struct TextureSource {
+  std::filesystem::path file{};  ///< empty: castray made it
+  int image = -1;                ///< its number among the images that a glTF file holds; -1: the file is it
+};
+
 /// An image on a surface, top row first, bilinear between the centres of its texels. Its lower left corner is
 /// (u,v) = (0,0), its upper right one (1,1). What was stored in 8 bits stays in 8 bits.
 struct Texture {
@@ -24,6 +31,7 @@ struct Texture {
   ColorSpace color_space = ColorSpace::srgb;  ///< of `bytes`
   std::vector<std::uint8_t> bytes{};          ///< width * height * channels; or, if empty,
   std::vector<float> floats{};                ///< as many linear values; below 0 only as heights
+  TextureSource source{};
 };
 
 /// How an image gives a parameter its value at a texture coordinate (u,v):

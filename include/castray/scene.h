@@ -119,7 +119,8 @@ struct Scene {
 /// sides, than from another of ten directions: a room is looked into from its open side.
 Camera automatic_camera(const Scene& scene);
 
-/// Reads a scene .json or an .obj (seen by an automatic view); "-" is one of them on the standard input.
+/// Reads a scene .json, a .gltf or .glb, an .obj or a .ply (seen by an automatic view, where there is no
+/// camera); "-" is one of them on the standard input, a .gltf apart.
 /// Throws InputError with the place of the first error.
 ///
 /// A mirroring transform (negative determinant) keeps each mesh's outward side outward: the counter-clockwise

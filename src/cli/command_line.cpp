@@ -32,7 +32,7 @@ constexpr Subcommand subcommands[] = {
     {"info", "what a scene holds, what it needs, warnings", add_info},
     {"merge", "add films of one render: parts, sample ranges, crops", add_merge},
     {"submit", "render in parts on many machines, and merge them", add_submit},
-    {"convert", "write an image in another format", add_convert},
+    {"convert", "write an image in another format, or a scene as a scene file", add_convert},
     {"completions", "print what makes a shell complete castray's flags, or the manual page", add_completions},
 };
 

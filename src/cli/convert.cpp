@@ -7,6 +7,7 @@
 #include "castray/film.h"
 #include "cli/commands.h"
 #include "cli/display_flags.h"
+#include "cli/scene_conversion.h"
 
 namespace castray::cli {
 
@@ -25,7 +26,16 @@ struct Convert {
       fmt::print(stderr, "castray: warning: {}: left out: {}\n", input.string(), fmt::join(left_out, ", "));
   }
 
+  int run_scene(const CommonFlags& common) const {
+    if (outputs.size() != 1) throw InputError("a scene becomes one scene file; give one -o FILE.json");
+    if (flags.given() || flags.bits != "auto" || !layer.empty())
+      throw InputError("--exposure, --tone, --bits and --layer are for images; leave them out");
+    convert_scene_file(input, outputs.front(), common);
+    return 0;
+  }
+
   int run(const CommonFlags& common) const {
+    if (is_convertible_scene(input)) return run_scene(common);
     const Display display = flags.display();
     if (!common.quiet) warn_of_darkening(display.tone);
     check_one_standard_output(outputs);
@@ -63,8 +73,10 @@ struct Convert {
 Run add_convert(Arguments& arguments, const CommonFlags& common) {
   auto convert = std::make_shared<Convert>();
   arguments
-      .add_positional("IMAGE", convert->input,
-                      "an image: .exr .pfm .hdr .film .png .ppm .jpg .tga .bmp .gif or .psd")
+      .add_positional(
+          "FILE", convert->input,
+          "an image: .exr .pfm .hdr .film .png .ppm .jpg .tga .bmp .gif or .psd; or a scene, .gltf .glb .obj "
+          "or .ply, which becomes a scene file .json")
       .required();
   add_outputs(arguments, convert->outputs);
   arguments.add("--layer", convert->layer, "NAME", layer_help);

@@ -139,11 +139,18 @@ ImageFile read_image(const std::filesystem::path& file, const std::string& layer
   return result;
 }
 
-Raster read_raster(const std::filesystem::path& file) {
-  const std::string bytes = read_file(file);
+Raster read_raster(const std::filesystem::path& file) { return parse_raster(file, read_file(file)); }
+
+Raster parse_raster(const std::filesystem::path& file, std::string_view bytes) {
   const Format& format = format_of(file, bytes);
   if (is_film(format)) throw InputError({file.string()}, "is a film; convert it to an image first");
   return format.read(file.string(), bytes, "").raster;
+}
+
+std::string suffix_of_image(std::string_view bytes) {
+  for (const Format& format : formats)
+    if (!format.signature.empty() && bytes.starts_with(format.signature)) return format.suffix;
+  return "";
 }
 
 std::vector<unsigned char> quantised(const Image& rows, const Display& display) {

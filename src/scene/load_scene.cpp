@@ -4,6 +4,7 @@
 #include "castray/error.h"
 #include "castray/scene.h"
 #include "core/files.h"
+#include "scene/gltf_scene.h"
 #include "scene/obj_mesh.h"
 #include "scene/ply_file.h"
 #include "scene/scene_file.h"
@@ -27,6 +28,12 @@ Scene scene_of_mesh(const std::filesystem::path& file, const std::function<ObjFi
   return scene;
 }
 
+Scene load_gltf(std::string_view bytes, const std::filesystem::path& file) {
+  WarningList warnings;
+  const GltfDocument document = parse_gltf(bytes, file, warnings);
+  return scene_of_gltf(document, std::move(warnings));
+}
+
 /// A scene file is an object, maybe behind comments.
 bool is_json(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
@@ -34,6 +41,7 @@ bool is_json(std::string_view text) {
 }
 
 Scene parse_any(std::string_view text, const std::filesystem::path& file) {
+  if (is_binary_gltf(text)) return load_gltf(text, file);
   if (is_json(text)) return parse_scene(text, file);
   const bool is_ply = text.starts_with("ply\n") || text.starts_with("ply\r");
   return scene_of_mesh(
@@ -53,12 +61,13 @@ Scene load_scene(const std::filesystem::path& file) {
   if (file == "-") return load_standard_input();
   if (suffix == ".json") return read_scene_file(file);
   if (suffix == ".obj") return scene_of_mesh(file, [&](WarningList& w) { return read_obj(file, w); });
+  if (suffix == ".gltf" || suffix == ".glb") return load_gltf(read_file(file), file);
   if (suffix == ".ply") return scene_of_mesh(file, [&](WarningList& w) { return read_ply(file, w); });
   std::error_code ignored;
   throw InputError(SourcePlace{file.string()},
                    std::filesystem::is_directory(file, ignored)
-                       ? "is a folder; give a scene file in it, .json, .obj or .ply"
-                       : "not a scene: its name must end in .json, .obj or .ply");
+                       ? "is a folder; give a scene file in it, .json, .gltf, .glb, .obj or .ply"
+                       : "not a scene: its name must end in .json, .gltf, .glb, .obj or .ply");
 }
 
 }  // namespace castray

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 namespace castray {
 
@@ -54,6 +55,15 @@ std::vector<std::string> readings(std::string_view text) {
     for (std::string& spelling : spellings(shortened))
       if (std::ranges::find(all, spelling) == all.end()) all.push_back(std::move(spelling));
   return all;
+}
+
+std::vector<std::string> without_repeats(std::vector<std::string> names) {
+  std::set<std::string> taken;
+  for (std::string& name : names) {
+    const std::string wanted = name;
+    for (int n = 2; !taken.insert(name).second; ++n) name = wanted + " " + std::to_string(n);
+  }
+  return names;
 }
 
 std::string lower_case(std::string_view text) {

@@ -27,9 +27,12 @@ std::vector<std::string> spellings(std::string_view text);
 /// space.
 std::vector<std::string_view> without_comments(std::string_view text);
 
-/// The spellings of `text`, then those without comments. Names may hold spaces and '#', so only what exists can
-/// decide.
+/// The spellings of `text`, then those without comments. Names may hold spaces and '#', so only what exists
+/// can decide.
 std::vector<std::string> readings(std::string_view text);
+
+/// The names, of which each that was there before gets a number: "oak", "oak 2".
+std::vector<std::string> without_repeats(std::vector<std::string> names);
 
 /// ASCII letters in lower case.
 std::string lower_case(std::string_view text);

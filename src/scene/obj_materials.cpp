@@ -160,13 +160,20 @@ std::string ObjMaterials::not_found(const std::string& name, const Search& searc
                      known.empty() ? std::string() : suggestion(name, known));
 }
 
-std::vector<std::uint16_t> ObjMaterials::find_all(const ObjFile& obj) {
-  const Search search(*this, obj);
+std::vector<std::uint16_t> ObjMaterials::find_all(const ObjFile& obj,
+                                                  const std::map<std::string, std::uint16_t>& replaced) {
+  std::optional<Search> opened;  // not where all materials are replaced
+  if (replaced.empty()) opened.emplace(*this, obj);
   std::vector<std::uint16_t> indices;
   for (const ObjFile::UsedMaterial& used : obj.materials) {
-    const auto found = used.named ? search.material(used.name) : std::nullopt;
+    if (const auto other = replaced.find(used.name); other != replaced.end()) {
+      indices.push_back(other->second);
+      continue;
+    }
+    if (!opened) opened.emplace(*this, obj);
+    const auto found = used.named ? opened->material(used.name) : std::nullopt;
     if (used.named && !found)
-      builder_.warnings.add(used.place, not_found(used.name, search) + "; the default, grey, is used");
+      builder_.warnings.add(used.place, not_found(used.name, *opened) + "; the default, grey, is used");
     if (found && used.in_front)
       builder_.warnings.add(used.place, "usemtl in front of the mtllib that has the material", Harm::none);
     indices.push_back(found ? *found : default_material(!obj.mesh.colors.empty()));

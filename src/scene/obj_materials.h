@@ -20,9 +20,10 @@ class ObjMaterials {
  public:
   explicit ObjMaterials(SceneBuilder& builder) : builder_(builder) {}
 
-  /// For each of `obj.materials` its position in Scene::materials. What cannot be found is a grey diffuse
-  /// material, with a warning.
-  std::vector<std::uint16_t> find_all(const ObjFile& obj);
+  /// For each of `obj.materials` its position in Scene::materials; `replaced` has those of some names. What
+  /// cannot be found is a grey diffuse material, with a warning.
+  std::vector<std::uint16_t> find_all(const ObjFile& obj,
+                                      const std::map<std::string, std::uint16_t>& replaced);
 
  private:
   struct Library {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "scene/obj_materials.h"
 
@@ -12,10 +14,14 @@ namespace castray {
 enum class NormalsFrom : std::uint8_t { file, face, smooth };
 
 struct MeshOptions {
-  std::optional<std::uint16_t> material;  ///< of every triangle; else the file's own
+  std::optional<std::uint16_t> material;           ///< of every triangle; else the file's own
+  std::map<std::string, std::uint16_t> materials;  ///< in place of the file's own, by their names there
   NormalsFrom normals = NormalsFrom::file;
   double crease_angle = 180;  ///< smooth: faces that meet at a greater angle, in degrees, keep their edge
 };
+
+/// Gives the mesh the normals that the options ask for. `smoothing` is as in ObjFile.
+void choose_normals(Mesh& mesh, const std::vector<std::uint32_t>& smoothing, const MeshOptions& options);
 
 /// The mesh of an OBJ file in a scene. Its materials are added to the scene.
 Mesh make_mesh(ObjFile obj, const MeshOptions& options, ObjMaterials& materials);

@@ -76,15 +76,27 @@ std::uint16_t SceneBuilder::add_material(Material material) {
 }
 
 int SceneBuilder::add_texture(const std::filesystem::path& file, ColorSpace space, TextureMeaning meaning) {
+  return add_raster({file, -1}, file.filename().string(), space, meaning, [&] { return read_raster(file); });
+}
+
+int SceneBuilder::add_texture(const TextureSource& source, const std::string& name, std::string_view bytes,
+                              ColorSpace space, TextureMeaning meaning) {
+  return add_raster(source, name, space, meaning, [&] { return parse_raster(name, bytes); });
+}
+
+int SceneBuilder::add_raster(const TextureSource& source, const std::string& name, ColorSpace space,
+                             TextureMeaning meaning, const std::function<Raster()>& read) {
   // Bytes are never below 0: they are the same whatever they mean.
-  const std::string as_bytes = fmt::format("{}\n{}", file.string(), static_cast<int>(space));
+  const std::string as_bytes =
+      fmt::format("{}\n{} {}", source.file.string(), source.image, static_cast<int>(space));
   if (const auto found = textures_.find(as_bytes); found != textures_.end()) return found->second;
-  const std::string name = fmt::format("{} {}", as_bytes, static_cast<int>(meaning));
-  const int index = add_texture(name, [&] {
-    Raster raster = read_raster(file);
-    check_values(raster.floats, meaning, file);
+  const int index = add_texture(fmt::format("{} {}", as_bytes, static_cast<int>(meaning)), [&] {
+    Raster raster = read();
+    check_values(raster.floats, meaning, source.file);
     if (meaning == TextureMeaning::normals) encode_normals(raster.floats);
-    return make_texture(file.filename().string(), std::move(raster), space);
+    Texture texture = make_texture(name, std::move(raster), space);
+    texture.source = source;
+    return texture;
   });
   if (!scene.textures[static_cast<std::size_t>(index)].bytes.empty()) textures_[as_bytes] = index;
   return index;

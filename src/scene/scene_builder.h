@@ -16,6 +16,8 @@
 
 namespace castray {
 
+struct Raster;
+
 /// What the values of an image stand for: amounts are at least 0, heights are of either sign, and normals n
 /// are (1 + n) / 2, or n themselves in an image that has values below 0.
 enum class TextureMeaning : std::uint8_t { amounts, heights, normals };
@@ -34,6 +36,10 @@ class SceneBuilder {
   /// The index of a file's texture, read when first asked for. Throws InputError.
   int add_texture(const std::filesystem::path& file, ColorSpace space,
                   TextureMeaning meaning = TextureMeaning::amounts);
+
+  /// The same of an image within another file, whose bytes are given.
+  int add_texture(const TextureSource& source, const std::string& name, std::string_view bytes,
+                  ColorSpace space, TextureMeaning meaning);
 
   /// The index of the texture that `make` returns when `name` is first asked for.
   int add_texture(const std::string& name, const std::function<Texture()>& make);
@@ -54,6 +60,8 @@ class SceneBuilder {
   Scene finish();
 
  private:
+  int add_raster(const TextureSource& source, const std::string& name, ColorSpace space,
+                 TextureMeaning meaning, const std::function<Raster()>& read);
   void drop_unusable();
   void find_scene_space();
   void round_positions();

@@ -13,6 +13,7 @@
 #include "materials/descriptor.h"
 #include "scene/camera_reader.h"
 #include "scene/environment_reader.h"
+#include "scene/gltf_scene.h"
 #include "scene/json_reader.h"
 #include "scene/lights_reader.h"
 #include "scene/material_reader.h"
@@ -123,9 +124,20 @@ class SceneFileReader {
     throw InputError(node.place, not_found("material", node.text, material_indices_));
   }
 
+  /// By the names that the mesh's file has for materials.
+  std::map<std::string, std::uint16_t> read_replaced(const JsonNode& node) {
+    if (node.type != JsonNode::Type::object)
+      throw InputError(node.place,
+                       fmt::format("\"materials\" of a mesh must be an object, not {}", node.type_name()));
+    std::map<std::string, std::uint16_t> replaced;
+    for (const JsonNode& member : node.children) replaced[member.key] = find_material(member);
+    return replaced;
+  }
+
   MeshOptions read_mesh_options(const ObjectReader& reader) {
     MeshOptions options;
     if (const JsonNode* material = reader.find("material")) options.material = find_material(*material);
+    if (const JsonNode* replaced = reader.find("materials")) options.materials = read_replaced(*replaced);
     if (const JsonNode* normals = reader.find("normals"))
       options.normals = static_cast<NormalsFrom>(choose(*normals, "\"normals\"", {"file", "face", "smooth"}));
     if (const JsonNode* crease = reader.find("crease_angle")) {
@@ -136,12 +148,21 @@ class SceneFileReader {
     return options;
   }
 
-  /// Its mesh comes from an OBJ or a PLY file.
+  /// The member that names the file of a mesh.
+  static const JsonNode& file_of(const ObjectReader& mesh) {
+    const JsonNode* found = nullptr;
+    for (const char* key : {"obj", "ply", "gltf"}) {
+      const JsonNode* node = mesh.find(key);
+      if (node && found)
+        throw InputError(node->key_place, fmt::format("give \"{}\" or \"{}\", not both", found->key, key));
+      if (node) found = node;
+    }
+    return found ? *found : mesh.require("obj");
+  }
+
   std::filesystem::path mesh_path(const ObjectReader& mesh) const {
-    const JsonNode* ply = mesh.find("ply");
-    if (ply && mesh.find("obj")) throw InputError(ply->key_place, "give \"obj\" or \"ply\", not both");
-    const JsonNode& node = ply ? *ply : mesh.require("obj");
-    std::filesystem::path path = file_.parent_path() / read_string(node, ply ? "\"ply\"" : "\"obj\"");
+    const JsonNode& node = file_of(mesh);
+    std::filesystem::path path = file_.parent_path() / read_string(node, fmt::format("\"{}\"", node.key));
     if (is_file(path)) return path;
     std::error_code ignored;
     throw InputError(
@@ -226,14 +247,23 @@ class SceneFileReader {
     const MeshOptions options = read_mesh_options(reader);
     const JsonNode* steps = reader.find("transform");
     const Transform transform = steps ? read_transform(*steps) : Transform{};
+    if (reader.find("gltf"))
+      return add_gltf(open_gltf(use.path), options, transform, builder_, mesh_node.object);
     if (!use.file) use.file = use.read(use.path, builder_.warnings);
     Mesh mesh = make_mesh(use.take(), options, materials_);
     if (steps) apply(transform, mesh);
     builder_.add(std::move(mesh), use.path, mesh_node.object);
   }
 
+  const GltfDocument& open_gltf(const std::filesystem::path& path) {
+    const auto found = documents_.find(path);
+    if (found != documents_.end()) return found->second;
+    return documents_.emplace(path, read_gltf(path, builder_.warnings)).first->second;
+  }
+
   std::filesystem::path file_;
   SceneBuilder builder_;
+  std::map<std::filesystem::path, GltfDocument> documents_;
   ObjMaterials materials_{builder_};
   std::map<std::string, std::uint16_t> material_indices_;
 
@@ -263,7 +293,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"sky", sky_keys},
         {"gradient", gradient_keys},
         {"map", map_keys()},
-        {"mesh", {"obj", "ply", "material", "transform", "normals", "crease_angle"}},
+        {"mesh", {"obj", "ply", "gltf", "material", "materials", "transform", "normals", "crease_angle"}},
         {"transform_step", transform_step_keys},
         {"instance", {"object", "transform", "transforms"}},
     };

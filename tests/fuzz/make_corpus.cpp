@@ -10,6 +10,7 @@
 #include "castray/film.h"
 #include "castray/image.h"
 #include "core/files.h"
+#include "gltf_file.h"
 #include "image/formats.h"
 #include "small_files.h"
 #include "temporary_folder.h"
@@ -118,6 +119,18 @@ void write_plys(const fs::path& folder) {
             std::string("\0\0\0\1\0\0\0\1\0\4\0\1\2\0", 14));
 }
 
+void write_gltfs(const fs::path& folder) {
+  GltfFile file;
+  const int texture = file.add_texture(png_file(1, 8, 2, {"abc"}));
+  file.add_node(
+      {{"mesh", file.add_square(file.add(
+                    "materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}}))},
+       {"rotation", {0, 0, 0, 1}}});
+  file.add_orthographic(1);
+  write_seed(folder, "glb", file.glb());
+  write_seed(folder, "gltf", file.gltf());
+}
+
 void write_mtls(const fs::path& folder) {
   copy_files(fs::path(CASTRAY_ROOT) / "models", ".mtl", folder);
   write_seed(folder, "all",
@@ -156,6 +169,7 @@ int main(int argc, char** argv) {
   write_objs(folder / "obj");
   write_mtls(folder / "mtl");
   write_plys(folder / "ply");
+  write_gltfs(folder / "gltf");
   write_images(folder / "image");
   write_films(folder / "film");
   write_arguments(folder / "arguments");
