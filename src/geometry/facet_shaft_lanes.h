@@ -5,8 +5,9 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// The blockers whose pyramids from the apex meet the box. For NearApex and FarApex.
+/// The blockers whose pyramids from the apex meet the box. False: they are more than a shaft holds. For
+/// NearApex and FarApex.
 template <class Apex>
-void facet_shaft(const BlockerList& blockers, const Apex& apex, const Box& box, Shaft& out);
+bool facet_shaft(const BlockerList& blockers, const Apex& apex, const Box& box, Shaft& out);
 
 }  // namespace castray::CASTRAY_ISA

@@ -46,8 +46,7 @@ class ListGeometry {
   template <class Apex>
   CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& /*budget*/,
                                  Shaft& out) const {
-    facet_shaft(list_.blocker_fields, apex, box, out);
-    return true;
+    return facet_shaft(list_.blocker_fields, apex, box, out);
   }
 
  private:
