@@ -117,8 +117,8 @@ void choose_caustics(Plan& plan, double gain_of_light_paths) {
 }
 
 void choose_by_pilot(Plan& plan, double gain_of_sharing) {
-  // More samples than the pilot's few favour plain paths, which are stratified over all samples of a pixel.
-  constexpr double worth_sharing = 1.5;
+  // Where neither is clearly better, plain paths show no tiles at few samples.
+  constexpr double worth_sharing = 1.2;
   if (gain_of_sharing < worth_sharing) plan.suffixes = 0;
   plan.kernel = fmt::format("{} (by a pilot, sharing is {:.2g} times as efficient as plain paths)",
                             kernel_name(plan), gain_of_sharing);

@@ -14,7 +14,7 @@ struct Context {
   /// By slot, 1: emission that the path finds by way of a specular lobe, or of a surface that focuses, is
   /// left to light paths. Null: none is.
   uint32_t* left_to_light_paths = nullptr;
-  uint64_t rays = 0, gathered = 0, evaluated = 0;  ///< as in TileResult
+  uint64_t rays = 0, gathered = 0, asked = 0, evaluated = 0;  ///< as in TileResult
 };
 
 /// The materials' records of vertices i to i + width - 1; 0 past the last.

@@ -69,11 +69,12 @@ inline constexpr int ragged_reach = tile_size / 2;
 
 /// Result of a job: positions in the full image, and radiance, of pixel i of tile k at 64 k + i. `rays` grows
 /// by the visibilities found, traced or gathered, `gathered` by those that pixels gathered from what a tile
-/// shares, `evaluated` by the BSDFs other than Lambert's that this took.
+/// shares, `asked` by those of them that took a ray each, `evaluated` by the BSDFs other than Lambert's that
+/// gathering took.
 struct TileResult {
   uint32_t *x, *y;  ///< as signed numbers, for pixels left of or above the image
   float* radiance[3];
-  uint64_t rays, gathered, evaluated;
+  uint64_t rays, gathered, asked, evaluated;
   float* emitted[3] = {};  ///< if not null: the part of `radiance` that the camera sees directly
 };
 

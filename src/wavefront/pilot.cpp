@@ -1,7 +1,6 @@
 #include "wavefront/pilot.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "castray/vec.h"
@@ -10,136 +9,6 @@
 namespace castray {
 
 namespace {
-
-/// Of the image's tiles, one in so many; and no more than suffice.
-constexpr int sparseness = 16, most_tiles = 32, fewest_tiles = 4;
-constexpr int replicates = 3, samples = 4;
-
-/// In rays: what a pixel's gathering from one thing that a tile shares costs, and the BSDFs that this
-/// evaluates. Fitted to the times of scenes of many kinds, lists and trees: within a third of each.
-constexpr double cost_of_gathering = 0.12, cost_of_evaluating = 0.055;
-
-/// Means over the samples of one replicate, pixel by pixel.
-using PixelMeans = std::vector<Vec3d>;
-
-/// What one technique made of one tile.
-struct TileRun {
-  PixelMeans mean[replicates];
-  double cost = 0;  ///< in rays
-};
-
-struct Tile {
-  int x, y;  ///< in the grid
-};
-
-/// A point set of low discrepancy over the grid (Hammersley's, by the golden ratio).
-std::vector<Tile> spread_tiles(int columns, int rows) {
-  const int count = std::min(most_tiles, columns * rows / sparseness);
-  std::vector<Tile> tiles;
-  for (int i = 0; i < count; ++i) {
-    constexpr double golden = 0.6180339887498949;
-    const double u = (i + 0.5) / count, v = (i + 0.5) * golden - std::floor((i + 0.5) * golden);
-    tiles.push_back({static_cast<int>(u * columns), static_cast<int>(v * rows)});
-  }
-  return tiles;
-}
-
-double cost_of(const TileResult& r) {
-  return static_cast<double>(r.rays - r.gathered) + cost_of_gathering * static_cast<double>(r.gathered) +
-         cost_of_evaluating * static_cast<double>(r.evaluated);
-}
-
-TileRun render_tile(KernelOptions options, const Tile& tile, const RenderJob& render_job) {
-  std::uint32_t x[batch_size], y[batch_size];
-  std::vector<float> radiance(3 * batch_size);
-  TileResult result{x, y, {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0, 0};
-  TileRun run;
-  for (std::uint32_t r = 0; r < replicates; ++r) {
-    options.seed = hash_combine(0x9170fu, r);
-    run.mean[r].assign(tile_pixels, Vec3d());
-    for (std::uint64_t s = 0; s < samples; ++s) {
-      render_job(options, {tile.x * tile_size, tile.y * tile_size, tile.x, tile.y, 1, s}, result);
-      for (std::size_t i = 0; i < tile_pixels; ++i) {
-        const Vec3d sample(result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]);
-        if (is_finite(sample)) run.mean[r][i] += sample / samples;
-      }
-    }
-  }
-  run.cost = cost_of(result);
-  return run;
-}
-
-void subtract(TileRun& from, const TileRun& seen) {
-  for (int r = 0; r < replicates; ++r)
-    for (std::size_t i = 0; i < tile_pixels; ++i) from.mean[r][i] = from.mean[r][i] - seen.mean[r][i];
-}
-
-Vec3d mean_of_tile(const TileRun& run) {
-  Vec3d sum;
-  for (const PixelMeans& pixels : run.mean)
-    for (const Vec3d& pixel : pixels) sum += pixel;
-  return sum / double(replicates * tile_pixels);
-}
-
-/// The sum over pixels and channels of the variance over replicates, relative to the tile's brightness.
-double relative_variance(const TileRun& run, const Vec3d& brightness) {
-  double error = 0;
-  for (std::size_t i = 0; i < tile_pixels; ++i)
-    for (int c = 0; c < 3; ++c) {
-      double sum = 0, squares = 0;
-      for (const PixelMeans& pixels : run.mean) {
-        sum += pixels[i][c];
-        squares += pixels[i][c] * pixels[i][c];
-      }
-      const double variance = std::max(squares - sum * sum / replicates, 0.0) / (replicates - 1);
-      error += variance / (brightness[c] * brightness[c] + 0.01);
-    }
-  return error;
-}
-
-struct Figures {
-  double error = 0, cost = 0;
-};
-
-/// Of shared and of plain paths on one tile.
-struct TileFigures {
-  Figures shared, plain;
-};
-
-TileFigures try_tile(const KernelOptions& options, const Tile& tile, const RenderJob& render_job) {
-  KernelOptions shared = options, plain = options;
-  shared.ragged = plain.ragged = 0;  // each pixel keeps its place in the result
-  plain.suffixes = 0;
-  KernelOptions emission = plain;
-  emission.max_depth = 1;
-  const TileRun seen = render_tile(emission, tile, render_job);
-  TileRun by_sharing = render_tile(shared, tile, render_job), alone = render_tile(plain, tile, render_job);
-  subtract(by_sharing, seen);
-  subtract(alone, seen);
-  const Vec3d brightness = (mean_of_tile(by_sharing) + mean_of_tile(alone)) / 2.0;
-  return {{relative_variance(by_sharing, brightness), by_sharing.cost},
-          {relative_variance(alone, brightness), alone.cost}};
-}
-
-/// Plain paths on one tile, per pixel and sample.
-struct PlainFigures {
-  Vec3d brightness;
-  Figures figures;
-};
-
-PlainFigures try_plain(KernelOptions plain, const Tile& tile, const RenderJob& render_job) {
-  plain.suffixes = 0;
-  plain.ragged = 0;
-  KernelOptions emission = plain;
-  emission.max_depth = 1;
-  TileRun run = render_tile(plain, tile, render_job);
-  subtract(run, render_tile(emission, tile, render_job));
-  const Vec3d brightness = mean_of_tile(run);
-  const double pixels = tile_pixels;
-  return {
-      brightness,
-      {relative_variance(run, brightness) * samples / pixels, run.cost / (replicates * samples * pixels)}};
-}
 
 /// Sums over splats: radiance, and the second moments of a sample of that light, by light paths, one for each
 /// pixel, and by chance.
@@ -162,16 +31,15 @@ struct SplatSums {
 constexpr std::size_t pilot_batches = 64;
 
 /// Means over the light paths of a pilot.
-SplatSums try_light_paths(KernelOptions options, int width, int height, int threads,
-                          const LightPathsJob& light_paths_job) {
+SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const LightPathsJob& light_paths_job) {
   options.seed = hash_combine(0x9170fu, 0u);
   std::vector<SplatSums> batches(pilot_batches);
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
+#pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
   for (std::size_t i = 0; i < pilot_batches; ++i) {
     const SplatSink sink{
         &batches[i], [](void* self, const Splats& splats) { static_cast<SplatSums*>(self)->add(splats); }};
-    batches[i].rays =
-        static_cast<double>(light_paths_job(options, {0, i * batch_size, batch_size, width, height}, sink));
+    const LightPathJob job{0, i * batch_size, batch_size, pilot.width, pilot.height};
+    batches[i].rays = static_cast<double>(light_paths_job(options, job, sink));
   }
   SplatSums means;  // in the batches' order, whatever the threads
   constexpr double share = 1.0 / double(pilot_batches * batch_size);
@@ -184,55 +52,100 @@ SplatSums try_light_paths(KernelOptions options, int width, int height, int thre
   return means;
 }
 
-std::vector<Tile> tiles_of(int width, int height) {
-  const auto in_tiles = [](int pixels) { return (pixels + tile_size - 1) / tile_size; };
-  return spread_tiles(in_tiles(width), in_tiles(height));
+/// Plain and shared paths, with caustics by one technique; the same where paths are plain.
+struct Ways {
+  TechniqueFigures plain, shared;
+};
+
+/// Errors times costs.
+struct Products {
+  double plain, shared;
+
+  std::optional<double> sharing() const {
+    if (!(plain > 0) || !(shared > 0)) return {};
+    return plain / shared;
+  }
+  double least(bool or_plain) const { return or_plain ? std::min(plain, shared) : shared; }
+};
+
+/// From a pilot's samples to 64 the error of shared paths grows that many times, beside that of plain ones,
+/// which are stratified over all samples of a pixel. It is not taken to fall.
+double growth_beside_plain(const Ways& ways) {
+  const auto remains = [](const TechniqueFigures& f) { return f.error / f.single_error; };
+  if (!(ways.plain.error > 0) || !(ways.shared.error > 0)) return 1;
+  const double growth = std::clamp(remains(ways.shared) / remains(ways.plain), 1.0, 1.5);
+  return growth * growth;  // 4 to 64 are two steps of 1 to 4
+}
+
+/// How much of the variance by chance is left where paths are shared, if the tiles find caustics as often as
+/// light paths say. `expected`: that variance. The rarest of what is left is missed by few tiles: it counts
+/// twice.
+double left_by_sharing(const Ways& by_light, const Ways& by_chance, double expected) {
+  constexpr double often_enough = 0.5, missed = 2;
+  const double alone = by_chance.plain.error - by_light.plain.error;
+  if (!(alone > often_enough * expected)) return 1;
+  const double shared = by_chance.shared.error - by_light.shared.error;
+  return std::clamp(missed * shared / alone, 1.0 / tile_pixels, 1.0);
+}
+
+/// Mean second moments of caustics, relative as relMSE is. `rest`: the brightness of all else.
+struct CausticErrors {
+  double by_light = 0, by_chance = 0;
+
+  CausticErrors(const SplatSums& splats, const Vec3d& rest) {
+    for (int c = 0; c < 3; ++c) {
+      const double brightness = rest[c] + splats.radiance[c];
+      by_light += splats.by_light[c] / (brightness * brightness + 0.01);
+      by_chance += splats.by_chance[c] / (brightness * brightness + 0.01);
+    }
+  }
+};
+
+/// With the error of caustics, by plain and by shared paths, and the cost of light paths, besides those of
+/// `rest`.
+Products products_of(const Ways& ways, const Ways& rest, double of_plain, double of_shared, double rays) {
+  return {(rest.plain.error + of_plain) * (ways.plain.cost + rays),
+          (rest.shared.error * growth_beside_plain(rest) + of_shared) * (ways.shared.cost + rays)};
+}
+
+/// Plain and, where options share, shared paths; then, if `both`, the same with caustics by chance.
+std::vector<KernelOptions> techniques_of(const KernelOptions& options, bool both) {
+  KernelOptions plain = options;
+  plain.suffixes = 0;
+  std::vector<KernelOptions> techniques{plain};
+  if (options.suffixes > 0) techniques.push_back(options);
+  for (std::size_t k = 0, ways = techniques.size(); both && k < ways; ++k) {
+    techniques.push_back(techniques[k]);
+    techniques.back().light_paths = false;
+  }
+  return techniques;
 }
 
 }  // namespace
 
-std::optional<double> gain_of_sharing(const KernelOptions& shared, int width, int height, int threads,
-                                      const RenderJob& render_job) {
-  const std::vector<Tile> tiles = tiles_of(width, height);
-  if (tiles.size() < fewest_tiles) return {};
-  std::vector<TileFigures> figures(tiles.size());
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::size_t i = 0; i < tiles.size(); ++i) figures[i] = try_tile(shared, tiles[i], render_job);
-  TileFigures sum;  // in the tiles' order, whatever the threads
-  for (const TileFigures& f : figures) {
-    sum.shared.error += f.shared.error;
-    sum.shared.cost += f.shared.cost;
-    sum.plain.error += f.plain.error;
-    sum.plain.cost += f.plain.cost;
+Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenChoices& open,
+                 const LightPathsJob& light_paths_job) {
+  const bool both = options.light_paths && open.caustics;
+  const std::vector<TechniqueFigures> figures = try_techniques(pilot, techniques_of(options, both));
+  if (figures.empty()) return {};
+  const std::size_t ways = options.suffixes > 0 ? 2 : 1;
+  const Ways rest{figures[0], figures[ways - 1]};
+  Gains gains;
+  if (!options.light_paths) {
+    gains.sharing_by_chance = products_of(rest, rest, 0, 0, 0).sharing();
+    return gains;
   }
-  if (!(sum.shared.error > 0) || !(sum.plain.error > 0)) return {};
-  return sum.plain.error * sum.plain.cost / (sum.shared.error * sum.shared.cost);
-}
-
-std::optional<double> gain_of_light_paths(const KernelOptions& options, int width, int height, int threads,
-                                          const RenderJob& render_job, const LightPathsJob& light_paths_job) {
-  const std::vector<Tile> tiles = tiles_of(width, height);
-  if (tiles.size() < fewest_tiles) return {};
-  std::vector<PlainFigures> plain(tiles.size());
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-  for (std::size_t i = 0; i < tiles.size(); ++i) plain[i] = try_plain(options, tiles[i], render_job);
-  PlainFigures rest;  // means over the tiles, in their order
-  for (const PlainFigures& p : plain) {
-    const double share = 1.0 / static_cast<double>(tiles.size());
-    rest.brightness += p.brightness * share;
-    rest.figures.error += p.figures.error * share;
-    rest.figures.cost += p.figures.cost * share;
-  }
-  const SplatSums splats = try_light_paths(options, width, height, threads, light_paths_job);
-  if (!(max_component(splats.radiance) > 0)) return {};
-  double by_light = 0, by_chance = 0;
-  for (int c = 0; c < 3; ++c) {
-    const double brightness = rest.brightness[c] + splats.radiance[c];
-    by_light += splats.by_light[c] / (brightness * brightness + 0.01);
-    by_chance += splats.by_chance[c] / (brightness * brightness + 0.01);
-  }
-  return (rest.figures.error + by_chance) * rest.figures.cost /
-         ((rest.figures.error + by_light) * (rest.figures.cost + splats.rays));
+  const SplatSums splats = try_light_paths(pilot, options, light_paths_job);
+  const CausticErrors caustics(splats, rest.plain.brightness);
+  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, splats.rays);
+  gains.sharing_by_lights = by_light.sharing();
+  if (!both || !(max_component(splats.radiance) > 0)) return gains;
+  const Ways chance{figures[ways], figures.back()};
+  const double left = left_by_sharing(rest, chance, caustics.by_chance);
+  const Products by_chance = products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0);
+  gains.sharing_by_chance = by_chance.sharing();
+  gains.light_paths = by_chance.least(open.sharing) / by_light.least(open.sharing);
+  return gains;
 }
 
 }  // namespace castray

@@ -45,6 +45,7 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   copy_radiance(s.radiance, job.tiles * tile_pixels, result.radiance);
   result.rays += c.rays;
   result.gathered += c.gathered;
+  result.asked += c.asked;
   result.evaluated += c.evaluated;
 }
 

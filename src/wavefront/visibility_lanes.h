@@ -54,6 +54,7 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers
     n += count(open);
   }
   geometry.occluded({s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, c.ends.one, s.blocked, (uint32_t)n});
+  c.asked += (uint64_t)n;
   uint64_t hidden = 0;
   for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
   for (int i = 0; i < tile_vectors; ++i) hide(t, i, lanes_of(hidden, i), weights);

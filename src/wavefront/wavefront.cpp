@@ -45,9 +45,13 @@ struct Workplace {
     std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
   }
   TileResult result(bool with_emitted) {
-    TileResult result{
-        &place[0], &place[batch_size], {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0,
-        0};
+    TileResult result{&place[0],
+                      &place[batch_size],
+                      {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]},
+                      0,
+                      0,
+                      0,
+                      0};
     for (std::size_t c = 0; with_emitted && c < 3; ++c) result.emitted[c] = &emitted[c * batch_size];
     return result;
   }
@@ -375,10 +379,11 @@ class Wavefront final : public PreparedIntegrator {
     if (job.options.max_depth == 1) return;
     if (job.options.lights == LightSampling::automatic && data_.lights.nodes() > 1)
       as_pilot([&] { learn_lights(scene, job); });
-    if (job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_))
-      as_pilot([&] { settle_caustics(job); });
-    if (plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on)
-      as_pilot([&] { settle_sharing(job); });
+    const OpenChoices open{
+        .caustics = job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_),
+        .sharing =
+            plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on};
+    if (open.caustics || open.sharing) as_pilot([&] { choose_techniques(job, open); });
   }
 
   BandWork work(const Job& job) const override {
@@ -435,11 +440,12 @@ class Wavefront final : public PreparedIntegrator {
     PilotJobs(const Wavefront& wavefront, int threads) : wavefront_(wavefront) {
       for (int i = 0; i < threads; ++i) workplaces_.emplace_back(wavefront.kernel_);
     }
-    RenderJob tiles() {
-      return [this](const KernelOptions& options, const TileJob& tile, TileResult& result) {
-        wavefront_.kernel_.render_tiles[wavefront_.plan_.features](wavefront_.data_.view, options, tile,
-                                                                   scratch(), result);
-      };
+    Pilot pilot(const Job& job) {
+      return {job.window.full_width, job.window.full_height, wavefront_.plan_.list, job.threads,
+              [this](const KernelOptions& options, const TileJob& tile, TileResult& result) {
+                wavefront_.kernel_.render_tiles[wavefront_.plan_.features](wavefront_.data_.view, options,
+                                                                           tile, scratch(), result);
+              }};
     }
     LightPathsJob light_paths() {
       return [this](const KernelOptions& options, const LightPathJob& job, const SplatSink& sink) {
@@ -455,22 +461,15 @@ class Wavefront final : public PreparedIntegrator {
     std::vector<Workplace> workplaces_;
   };
 
-  /// Keeps paths from lights unless a pilot says that chance does better.
-  void settle_caustics(const Job& job) {
+  /// Keeps paths from lights, and shared paths, unless a pilot says that others do better.
+  void choose_techniques(const Job& job, const OpenChoices& open) {
     PilotJobs jobs(*this, job.threads);
-    const std::optional<double> gain =
-        gain_of_light_paths(kernel_options(job.options, plan_, false), job.window.full_width,
-                            job.window.full_height, job.threads, jobs.tiles(), jobs.light_paths());
-    if (gain) choose_caustics(plan_, *gain);
-  }
-
-  /// Keeps shared paths unless a pilot says that plain ones do better.
-  void settle_sharing(const Job& job) {
-    PilotJobs jobs(*this, job.threads);
-    const std::optional<double> gain =
-        gain_of_sharing(kernel_options(job.options, plan_, false), job.window.full_width,
-                        job.window.full_height, job.threads, jobs.tiles());
-    if (gain) choose_by_pilot(plan_, *gain);
+    const Gains gains =
+        find_gains(jobs.pilot(job), kernel_options(job.options, plan_, false), open, jobs.light_paths());
+    if (gains.light_paths) choose_caustics(plan_, *gains.light_paths);
+    const std::optional<double>& sharing =
+        traces_light_paths(job.options, plan_) ? gains.sharing_by_lights : gains.sharing_by_chance;
+    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing);
   }
 
   std::string accel_summary() const {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "castray/vec.h"
+#include "wavefront/kernel_api.h"
+
+namespace castray {
+
+/// One job's radiance and rays. Called by several threads of one team at once.
+using RenderJob = std::function<void(const KernelOptions&, const TileJob&, TileResult&)>;
+
+/// What pilots render: a few tiles of an image, some samples in each of some independent replicates.
+struct Pilot {
+  int width, height;  ///< of the full image
+  bool list;          ///< geometry is a list of facets instead of a tree
+  int threads;
+  RenderJob render_job;
+};
+
+/// Of one technique, means over pixels. Errors are the sum over channels of the variance over replicates,
+/// relative as relMSE is, times the number of samples of which it is the variance.
+struct TechniqueFigures {
+  Vec3d brightness;         ///< without what the camera sees of emitters, as errors are
+  double error = 0;         ///< of means over some samples
+  double single_error = 0;  ///< of single samples
+  double cost = 0;          ///< of a sample, in rays, of which what pixels gather is a fraction
+};
+
+/// Tries techniques on the same tiles. What the camera sees of emitters is noise of all alike, and left out.
+/// Nothing depends on the seed of the options, or on threads. Empty if the image is too small to spare tiles.
+std::vector<TechniqueFigures> try_techniques(const Pilot& pilot,
+                                             const std::vector<KernelOptions>& techniques);
+
+}  // namespace castray
