@@ -215,9 +215,10 @@ std::size_t bytes_of_pixel(const Film& film);
 
 /// Writes the film losslessly to .film files, and its image, made once, to others (see `write_image`). The
 /// bytes of a .film depend only on the samples and `key`, not on the order in which they were added and
-/// merged. `threads`: as for `image_of`.
+/// merged. `threads`: as for `image_of`; `passes`: as for `write_image`.
 void write_film(const std::vector<std::filesystem::path>& files, const Film& film,
-                const Display& display = {}, const Metadata& metadata = {}, int threads = 0);
+                const Display& display = {}, const Metadata& metadata = {}, int threads = 0,
+                const Passes& passes = {});
 void write_film(const std::filesystem::path& file, const Film& film, const Display& display = {},
                 const Metadata& metadata = {});
 

@@ -70,6 +70,19 @@ struct Noise {
   bool of_halves = false;                       ///< the values are stored as half floats
 };
 
+/// A channel of an EXR file besides those of the image: a value of each pixel, top row first.
+struct ImageChannel {
+  std::string name;  ///< in full, "albedo.R"
+  bool may_be_half = false;
+  std::vector<float> values;
+};
+
+/// Channels of an image's size, and what is to be said of them.
+struct Passes {
+  std::vector<ImageChannel> channels;
+  Metadata metadata;
+};
+
 /// Pixels as a file stores them, top row first, the channels of a pixel side by side. Alpha, where there is
 /// any, is below 1 somewhere; it is multiplied into the colours in EXR only.
 struct Raster {
@@ -127,9 +140,10 @@ Image decoded(const ImageFile& file, const ToneCurve& tone);
 
 /// Writes `image` in the format of the suffix, atomically. `display` shapes .ppm and .png only, but for
 /// bits16; there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and
-/// .exr, `noise` in .exr. Throws InputError.
+/// .exr, `noise` and `passes` in .exr. Throws InputError.
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display = {},
-                 const Metadata& metadata = {}, const std::optional<Noise>& noise = {});
+                 const Metadata& metadata = {}, const std::optional<Noise>& noise = {},
+                 const Passes& passes = {});
 
 /// NAME.variance.pfm of NAME.pfm.
 std::filesystem::path variance_file(const std::filesystem::path& pfm);

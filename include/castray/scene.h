@@ -60,6 +60,12 @@ struct DeltaLight {
   double cos_outer = 0, cos_inner = 1;
 };
 
+/// Triangles of one name: from `first_triangle` on, to the next object's.
+struct SceneObject {
+  std::string name;
+  std::uint32_t first_triangle = 0;
+};
+
 /// A scene, an immutable value once loaded.
 ///
 /// Geometry lives in *scene space*: the input is parsed in double, moved so that the middle of its bounds is
@@ -80,6 +86,7 @@ struct Scene {
   std::vector<Index3>
       triangles;  ///< into positions; counter-clockwise seen from the side the normal points to
   std::vector<std::uint16_t> triangle_material;  ///< per triangle, into materials
+  std::vector<SceneObject> objects;              ///< by ascending first triangle, the first of them 0
   std::vector<Vec3f> normals;                    ///< unit shading normals, or empty
   std::vector<Index3>
       triangle_normals;  ///< per triangle into normals, `no_index` where it has none; or empty
@@ -106,6 +113,8 @@ struct Scene {
   static constexpr std::uint32_t no_index = 0xffffffffu;
 
   const Material& material_of(std::uint32_t triangle) const { return materials[triangle_material[triangle]]; }
+  /// The triangle's object, into objects.
+  std::size_t object_of(std::uint32_t triangle) const;
   Vec3d to_world(const Vec3d& p) const { return center + p * unit; }
   Vec3d to_scene(const Vec3d& p) const { return (p - center) / unit; }
   Camera to_world(const Camera& camera) const;

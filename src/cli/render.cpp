@@ -10,6 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/memory_limit.h"
 #include "cli/render_command.h"
+#include "cli/render_passes.h"
 #include "cli/render_report.h"
 #include "cli/render_run.h"
 #include "core/files.h"
@@ -51,7 +52,8 @@ std::optional<int> rows_at_a_time(const RenderRequest& request, const MemoryNeed
 
 /// The result is written without the limit, so that it is not lost.
 RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Scene& scene) {
-  const MemoryNeed need = memory_need(scene, request.options);
+  MemoryNeed need = memory_need(scene, request.options);
+  need.film_pixel += bytes_of_pixel(request.passes);
   if (request.verbose) fmt::print(stderr, "castray: memory: {}\n", need.text());
   const std::optional<int> band =
       rows_at_a_time(request, need, window_of(scene.width, scene.height, request.options).width());
@@ -83,6 +85,9 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
     report.result = run_limited(run, request, scene);
   } catch (const BandsInterrupted&) {
     fmt::print(stderr, "castray: interrupted; an image in bands is written whole or not at all\n");
+    return 130;
+  } catch (const PassesInterrupted&) {
+    fmt::print(stderr, "castray: interrupted before the first sample; nothing was written\n");
     return 130;
   }
   report.total_seconds = seconds_since(begin);

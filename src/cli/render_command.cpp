@@ -5,6 +5,7 @@
 #include "castray/error.h"
 #include "cli/display_flags.h"
 #include "cli/phase.h"
+#include "cli/render_passes.h"
 #include "cli/shell_word.h"
 #include "core/files.h"
 
@@ -92,6 +93,7 @@ void check(const RenderRequest& request) {
   if (request.checkpoint && request.options.target_error)
     throw InputError("--target-error: cannot go with --checkpoint; leave one out");
   for (const fs::path& output : request.outputs) check_output_image(output);
+  check_passes(request);
   std::vector<fs::path> all = request.outputs;
   if (request.stats) all.push_back(*request.stats);
   check_one_standard_output(all);

@@ -7,6 +7,7 @@
 #include "castray/error.h"
 #include "cli/display_flags.h"
 #include "cli/memory_limit.h"
+#include "cli/render_passes.h"
 #include "cli/values.h"
 #include "core/files.h"
 #include "core/nearest.h"
@@ -230,6 +231,10 @@ const RenderFlag flags[] = {
      [](Request r, Text, Text t) { r.display.tone = parse_tone_curve(t); }},
     {"bits", "auto|16", bits_help, output,
      [](Request r, Text f, Text t) { r.display.bits16 = parse_bits(f, t); }, false},
+    {"passes", "LIST|all",
+     "what .exr files hold besides the image: albedo,normal,depth,position,denoising,material,object,direct,"
+     "indirect,samples,variance (docs/passes.md)",
+     output, [](Request r, Text f, Text t) { r.passes = parse_passes(f, t); }, false},
     {"metadata", "plain|time", "time: PNG and EXR files tell how long they took, so no two are equal [plain]",
      output,
      [](Request r, Text f, Text t) {

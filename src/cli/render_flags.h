@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "castray/image.h"
+#include "castray/passes.h"
 #include "castray/render.h"
 #include "castray/scene.h"
 #include "cli/part.h"
@@ -37,6 +38,7 @@ struct RenderRequest {
   SceneFlags scene;
   Fault fault = Fault::none;
   Display display;
+  PassSet passes;              ///< that .exr outputs hold besides the image
   bool metadata_time = false;  ///< images say how long they took
   std::vector<std::filesystem::path> outputs;
   std::optional<std::filesystem::path> checkpoint, stats;

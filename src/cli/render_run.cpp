@@ -8,6 +8,7 @@
 #include "cli/film_bands.h"
 #include "cli/interrupt.h"
 #include "cli/phase.h"
+#include "cli/render_passes.h"
 #include "cli/temporary_folder.h"
 #include "core/files.h"
 #include "plan/job.h"
@@ -54,6 +55,7 @@ RenderResult RenderRun::run(const Scene& scene) {
   if (start && !request_.quiet)
     fmt::print(stderr, "castray: going on from {}: {} of {} samples per pixel are there\n",
                checkpoint_->file().string(), samples_text(start->samples_per_pixel()), request_.options.spp);
+  if (!request_.passes.empty()) passes_ = surface_passes(scene, request_, mode());
   const PreparedScene prepared = prepare_told(scene);
   display_ = ProgressDisplay(mode());
   open_viewers(scene);
@@ -61,6 +63,8 @@ RenderResult RenderRun::run(const Scene& scene) {
   view(result.film);
   terminal_.reset();
   display_.finish(result.stats.stopped != Stopped::interrupted);
+  if (result.stats.stopped != Stopped::interrupted)
+    add_film_passes(passes_, scene, request_, result.film, mode());
   return result;
 }
 
@@ -70,6 +74,7 @@ std::string goes_with_no_bands(const RenderRequest& request) {
   if (request.preview_in_terminal) return "--preview";
   if (request.tev) return "--tev";
   if (request.replicates) return "--replicates";
+  if (!request.passes.empty()) return "--passes";
   if (request.options.time_limit) return "--time-limit";
   if (request.options.target_error) return "--target-error";
   return std::any_of(request.outputs.begin(), request.outputs.end(), is_film_format) ? "a .film output" : "";
@@ -206,7 +211,7 @@ bool RenderRun::is_preview_due() const {
 }
 
 void RenderRun::write(const std::vector<fs::path>& outputs, const Film& film) const {
-  write_film(outputs, film, request_.display, report_.metadata(film), request_.options.threads);
+  write_film(outputs, film, request_.display, report_.metadata(film), request_.options.threads, passes_);
 }
 
 void RenderRun::save(const Film& film) {

@@ -27,6 +27,7 @@ class RenderRun {
   /// `report` tells of the scene; `begin` is when the program started, for the time limit.
   RenderRun(const RenderRequest& request, const RenderReport& report, Clock::time_point begin);
 
+  /// Throws PassesInterrupted.
   RenderResult run(const Scene& scene);
 
   /// Renders so many rows at a time, with a margin above and below of which their image depends, and writes
@@ -55,6 +56,7 @@ class RenderRun {
   const RenderRequest& request_;
   const RenderReport& report_;
   Clock::time_point begin_, previewed_ = Clock::now(), viewed_;
+  Passes passes_;
   std::optional<Checkpoint> checkpoint_;
   ProgressDisplay display_;
   std::unique_ptr<TerminalPreview> terminal_;

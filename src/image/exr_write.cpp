@@ -7,6 +7,7 @@
 #include <ImfStringAttribute.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <ostream>
 
 #include "image/exr_channels.h"
@@ -32,12 +33,21 @@ class StreamOut : public Imf::OStream {
 const float* floats_of(const Image& image) { return reinterpret_cast<const float*>(image.pixels.data()); }
 
 /// Finite values stay finite.
+half half_of(float v) { return half(std::isfinite(v) ? std::clamp<float>(v, -HALF_MAX, HALF_MAX) : v); }
+
 std::vector<half> halves_of(const Image& image) {
   std::vector<half> halves;
   halves.reserve(3 * image.pixels.size());
   for (const Vec3f& v : image.pixels)
-    for (int c = 0; c < 3; ++c)
-      halves.emplace_back(std::isfinite(v[c]) ? std::clamp<float>(v[c], -HALF_MAX, HALF_MAX) : v[c]);
+    for (int c = 0; c < 3; ++c) halves.push_back(half_of(v[c]));
+  return halves;
+}
+
+/// Rows y0 <= y < y1 of a channel of this width.
+std::vector<half> halves_of(const ImageChannel& channel, int width, int y0, int y1) {
+  const auto row = [&](int y) { return channel.values.begin() + std::ptrdiff_t{y} * width; };
+  std::vector<half> halves;
+  std::transform(row(y0), row(y1), std::back_inserter(halves), half_of);
   return halves;
 }
 
@@ -62,6 +72,7 @@ class ExrWriter final : public RowWriter {
  public:
   ExrWriter(std::ostream& out, const WrittenImage& image)
       : noise_(image.noise),
+        passes_(image.passes),
         bits16_(image.display.bits16),
         stream_(out),
         file_(stream_, header_of(image), 0) {}
@@ -77,6 +88,16 @@ class ExrWriter final : public RowWriter {
     if (noise_)
       add_to(frame, reinterpret_cast<const float*>(&noise_->variance.at(0, y_)), rows.width, exr_variances,
              window);
+    std::vector<std::vector<half>> halves_of_passes;
+    for (const ImageChannel& channel : passes_.channels) {
+      if (is_half(channel)) {
+        halves_of_passes.push_back(halves_of(channel, rows.width, y_, y_ + rows.height));
+        frame.insert(channel.name, exr_slice(halves_of_passes.back().data(), 1, rows.width, window));
+      } else {
+        const float* first = channel.values.data() + std::ptrdiff_t{y_} * rows.width;
+        frame.insert(channel.name, exr_slice(first, 1, rows.width, window));
+      }
+    }
     file_.setFrameBuffer(frame);
     file_.writePixels(rows.height);
     y_ += rows.height;
@@ -91,11 +112,18 @@ class ExrWriter final : public RowWriter {
       for (const char* name : exr_variances) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
       header.insert(exr_freedom, Imf::FloatAttribute(static_cast<float>(noise->freedom)));
     }
+    for (const ImageChannel& channel : image.passes.channels)
+      header.channels().insert(
+          channel.name, Imf::Channel(image.display.bits16 && channel.may_be_half ? Imf::HALF : Imf::FLOAT));
     add_metadata(header, image.metadata);
+    add_metadata(header, image.passes.metadata);
     return header;
   }
 
+  bool is_half(const ImageChannel& channel) const { return bits16_ && channel.may_be_half; }
+
   const std::optional<Noise>& noise_;
+  const Passes& passes_;
   bool bits16_;
   StreamOut stream_;
   Imf::OutputFile file_;

@@ -290,7 +290,7 @@ Film read_film_header(const std::filesystem::path& file) {
 }
 
 void write_film(const std::vector<std::filesystem::path>& files, const Film& film, const Display& display,
-                const Metadata& metadata, int threads) {
+                const Metadata& metadata, int threads, const Passes& passes) {
   std::optional<Image> image;
   for (const auto& file : files) {
     if (is_film_format(file)) {
@@ -298,7 +298,7 @@ void write_film(const std::vector<std::filesystem::path>& files, const Film& fil
       continue;
     }
     if (!image) image = image_of(film, threads);
-    write_image(file, *image, display, metadata, noise_of(film));
+    write_image(file, *image, display, metadata, noise_of(film), passes);
   }
 }
 

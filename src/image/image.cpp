@@ -175,8 +175,8 @@ std::unique_ptr<RowWriter> row_writer(const std::filesystem::path& file, std::os
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
-                 const Metadata& metadata, const std::optional<Noise>& noise) {
-  const WrittenImage written{image.width, image.height, display, metadata, noise};
+                 const Metadata& metadata, const std::optional<Noise>& noise, const Passes& passes) {
+  const WrittenImage written{image.width, image.height, display, metadata, noise, passes};
   write_file(file, [&](std::ostream& out) {
     const auto writer = row_writer(file, out, written);
     writer->add(image);
@@ -187,7 +187,8 @@ void write_image(const std::filesystem::path& file, const Image& image, const Di
 std::string encode_png(const Image& image, const Display& display, const Metadata& metadata) {
   std::ostringstream out;
   const std::optional<Noise> none;
-  const auto writer = write_png(out, {image.width, image.height, display, metadata, none});
+  const Passes no_passes;
+  const auto writer = write_png(out, {image.width, image.height, display, metadata, none, no_passes});
   writer->add(image);
   writer->finish();
   return std::move(out).str();

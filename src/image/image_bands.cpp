@@ -52,7 +52,8 @@ void write_image_in_bands(const std::vector<std::filesystem::path>& files, int w
   Image first = rows(0, std::min(band, height));
   const Metadata told = metadata();
   const std::optional<Noise> none;
-  BandedFiles(files, {width, height, display, told, none}, band, rows, std::move(first)).write();
+  const Passes no_passes;
+  BandedFiles(files, {width, height, display, told, none, no_passes}, band, rows, std::move(first)).write();
 }
 
 }  // namespace castray

@@ -17,12 +17,13 @@ class RowWriter {
   virtual void finish() {}
 };
 
-/// What is written besides pixels. `noise`, of the whole image, outlives the writer.
+/// What is written besides pixels. `noise` and `passes`, of the whole image, outlive the writer.
 struct WrittenImage {
   int width = 0, height = 0;
   const Display& display;
   const Metadata& metadata;
   const std::optional<Noise>& noise;
+  const Passes& passes;
 };
 
 // One for each format. Stream and image outlive the writer, which writes its header at once.

@@ -21,7 +21,8 @@ const MaterialDescriptor& conductor_descriptor() {
       .traits = [](const Material& m) -> std::uint32_t {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
                (has_narrow_lobe(m) ? trait_focuses : 0u);
-      }};
+      },
+      .albedo = [](const SurfaceValues<double>& v) { return v.color(slot_ks); }};
   return descriptor;
 }
 

@@ -25,7 +25,19 @@ bool Coverage::is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2)
   return static_cast<T>(key >> 8) * T(0x1p-24) < coverage;
 }
 
+template <class T>
+HitFilter<T> Coverage::world_of(std::uint32_t key, std::uint64_t sample) const {
+  if (partial_.empty()) return {};
+  const std::uint32_t low = hash_combine(key, static_cast<std::uint32_t>(sample));
+  const std::uint32_t world = hash_combine(low, static_cast<std::uint32_t>(sample >> 32));
+  return [this, world](const Hit<T>& hit) {
+    return !is_partial(hit.triangle) || is_there(world, hit.triangle, hit.b1, hit.b2);
+  };
+}
+
 template bool Coverage::is_there(std::uint32_t, std::uint32_t, float, float) const;
 template bool Coverage::is_there(std::uint32_t, std::uint32_t, double, double) const;
+template HitFilter<float> Coverage::world_of(std::uint32_t, std::uint64_t) const;
+template HitFilter<double> Coverage::world_of(std::uint32_t, std::uint64_t) const;
 
 }  // namespace castray

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "castray/scene.h"
+#include "geometry/ray.h"
 
 namespace castray {
 
@@ -28,6 +29,11 @@ class Coverage {
   /// Whether the point at barycentrics b1, b2 is there.
   template <class T>
   bool is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2) const;
+
+  /// Which hits count for the path of this sample of the pixel with this key: each path has a world of its
+  /// own. The filter must not outlive this.
+  template <class T>
+  HitFilter<T> world_of(std::uint32_t key, std::uint64_t sample) const;
 
  private:
   const Scene& scene_;

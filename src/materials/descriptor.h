@@ -28,6 +28,8 @@ struct MaterialKey {
 
 class LobeAlbedo;
 struct LobeTables;
+template <class T>
+struct SurfaceValues;
 
 /// All that is to be known of a material besides its reflection: what files, `info`, hashes, plans and
 /// kernels need, in one place.
@@ -38,6 +40,8 @@ struct MaterialDescriptor {
   std::string_view formula;  ///< f, for docs/materials.md
   std::vector<MaterialKey> keys;
   std::uint32_t (*traits)(const Material&);  ///< MaterialTrait set, that of emission left out
+  /// Its colour, for passes: the share of light from straight on that it scatters, within the model's means.
+  Vec3d (*albedo)(const SurfaceValues<double>& values);
   /// Makes of `values`, by ParameterSlot, those that the kernels' model wants; for a model with a lobe whose
   /// albedo is tabulated. Null: they are used as they are.
   void (*finish)(const LobeAlbedo& lobe, double* values) = nullptr;

@@ -26,7 +26,8 @@ const MaterialDescriptor& dielectric_descriptor() {
       .traits = [](const Material& m) -> std::uint32_t {
         const bool smooth = has_smooth_lobe(m) || m.ior == 1;
         return trait_directional | trait_transmits | (smooth ? trait_specular : trait_focuses);
-      }};
+      },
+      .albedo = [](const SurfaceValues<double>&) { return Vec3d(1); }};
   return descriptor;
 }
 

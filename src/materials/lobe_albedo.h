@@ -11,6 +11,9 @@
 
 namespace castray {
 
+/// What a lobe of Schlick's Fresnel term and a base under it scatter straight on.
+inline Vec3d coated_albedo(const Vec3d& base, const Vec3d& f0) { return f0 + (Vec3d(1) - f0) * base; }
+
 /// Directional albedo of a GGX lobe with Schlick's Fresnel term, as a function of the cosine to the normal.
 ///
 /// Schlick's term is F0 (1 - s) + s with s = (1 - h.wo)^5, so the albedo of any F0 is E(c) = F0 a(c) + b(c).

@@ -31,6 +31,8 @@ const MaterialDescriptor& microfacet_descriptor() {
       .traits = [](const Material& m) -> std::uint32_t {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u);
       },
+      .albedo =
+          [](const SurfaceValues<double>& v) { return coated_albedo(v.color(slot_kd), v.color(slot_ks)); },
       .finish =
           [](const LobeAlbedo& lobe, double* values) {
             const auto vec = [&](int slot) {

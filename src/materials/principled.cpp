@@ -64,6 +64,12 @@ const MaterialDescriptor& principled_descriptor() {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
                (bare_metal && has_narrow_lobe(m) ? trait_focuses : 0u);
       },
+      .albedo =
+          [](const SurfaceValues<double>& v) {
+            const Vec3d kd = v.color(slot_kd), ks = v.color(slot_ks);
+            const double metallic = v.at(slot_metallic);
+            return coated_albedo(kd * (1 - metallic), ks + (kd - ks) * metallic);
+          },
       .finish = [](const LobeAlbedo&, double*) {}};
   return descriptor;
 }

@@ -8,6 +8,7 @@
 #include "lights/environment.h"
 #include "lights/light_share.h"
 #include "materials/coverage.h"
+#include "reference/camera_sample.h"
 #include "reference/estimator.h"
 #include "reference/segments.h"
 #include "reference/surface.h"
@@ -55,14 +56,11 @@ class CastRay {
   /// Radiance of one camera sample of pixel (x,y) of a width x height image; adds the rays traced to `rays`.
   Vec3<T> sample_pixel(int x, int y, int width, int height, std::uint64_t sample, std::uint64_t& rays) const {
     Path path{.key = pixel_key(x, y, options_.seed), .sample = sample};
-    path.there = what_is_there(path);
+    path.there = coverage_.world_of<T>(path.key, sample);
     const std::array<float, 4> u = draw(path, PathBlocks::camera);
-    const double jitter_x = options_.jitter ? u[0] : 0.5, jitter_y = options_.jitter ? u[1] : 0.5;
     path.light_u = {T(u[2]), T(u[3])};
-    const Camera& camera = scene_.camera;
-    const std::array<float, 4> lens =
-        camera.has_lens() ? draw(path, PathBlocks::lens) : std::array<float, 4>{};
-    const CameraRay ray = camera.ray(x + jitter_x, y + jitter_y, width, height, lens[0], lens[1]);
+    const auto lens = [&] { return draw(path, PathBlocks::lens); };
+    const CameraRay ray = camera_sample(scene_.camera, x, y, width, height, options_.jitter, u, lens);
     const Vec3<T> radiance = cast_ray({Vec3<T>(ray.origin), Vec3<T>(normalize(ray.direction))}, path,
                                       textbook_.camera_sees_emitters() ? Arrival::whole() : Arrival::none());
     rays += path.rays;
@@ -89,16 +87,6 @@ class CastRay {
     static Arrival none() { return {}; }
     static Arrival shared_with_lights(T pdf) { return {.counts = true, .shared = true, .pdf = pdf}; }
   };
-
-  /// Where surfaces are only partly there, each path has a world of its own.
-  HitFilter<T> what_is_there(const Path& path) const {
-    if (!coverage_.partial_triangles()) return {};
-    const std::uint32_t low = hash_combine(path.key, static_cast<std::uint32_t>(path.sample));
-    const std::uint32_t world = hash_combine(low, static_cast<std::uint32_t>(path.sample >> 32));
-    return [this, world](const Hit<T>& hit) {
-      return !coverage_.is_partial(hit.triangle) || coverage_.is_there(world, hit.triangle, hit.b1, hit.b2);
-    };
-  }
 
   std::array<float, 4> draw(const Path& path, std::uint32_t block) const {
     return textbook_.draw(path.key, path.sample, block);

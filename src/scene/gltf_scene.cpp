@@ -88,6 +88,7 @@ void add_gltf(const GltfDocument& document, const MeshOptions& options, const Tr
       has_faces = true;
       std::ranges::fill(mesh.triangle_material, material);
       choose_normals(mesh, {}, options);
+      mesh.objects = {{document.model.meshes[m].name}};
       if (is_shared)
         builder.add(std::move(mesh), document.path, part_of);
       else

@@ -39,6 +39,10 @@ void append(Mesh& all, Mesh&& more) {
   append_values(all.uvs, more.uvs);
   append_values(all.colors, more.colors);
   append_values(all.triangle_material, more.triangle_material);
+  for (SceneObject& object : more.objects) {
+    object.first_triangle += static_cast<std::uint32_t>(triangles);
+    all.objects.push_back(std::move(object));
+  }
 }
 
 }  // namespace castray

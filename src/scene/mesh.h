@@ -14,6 +14,7 @@ struct Mesh {
   std::vector<Vec3d> positions;
   std::vector<Index3> triangles;
   std::vector<std::uint16_t> triangle_material;  ///< per triangle, into Scene::materials
+  std::vector<SceneObject> objects;              ///< as the file names them; may be empty
   std::vector<Vec3f> normals;
   std::vector<Index3> triangle_normals;  ///< empty, or per triangle; Scene::no_index where it has none
   std::vector<std::array<float, 2>> uvs;

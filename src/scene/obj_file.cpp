@@ -69,7 +69,16 @@ class ObjReader {
       use_material();
     else if (key == "mtllib")
       read_libraries();
-    // Lines, points, groups, curves: nothing to render.
+    else if (key == "o" || (key == "g" && !names_objects_))
+      begin_object(key == "o");
+    // Lines, points, curves: nothing to render.
+  }
+
+  /// Groups stand for objects in files that name none.
+  void begin_object(bool named) {
+    if (named && !names_objects_) mesh_.objects.clear();
+    names_objects_ |= named;
+    mesh_.objects.push_back({std::string(lines_.rest()), static_cast<std::uint32_t>(mesh_.triangles.size())});
   }
 
   void note(Oddity oddity, std::uint64_t times = 1) {
@@ -244,6 +253,7 @@ class ObjReader {
   ObjFile obj_;
   Mesh& mesh_ = obj_.mesh;
   MeshFaces faces_{mesh_};
+  bool names_objects_ = false;
   std::uint32_t smoothing_ = 0;  // the group of the faces at hand
   ObjFile::UsedMaterial current_{{}, false, false};
   std::optional<std::uint16_t> current_index_;

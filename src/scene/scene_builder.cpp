@@ -24,6 +24,26 @@ void keep_marked(std::vector<T>& values, const std::vector<bool>& keep) {
   values.resize(kept);
 }
 
+/// Gives what has no name that of its file.
+void name_objects(Mesh& mesh, const std::string& file) {
+  if (mesh.objects.empty() || mesh.objects.front().first_triangle > 0)
+    mesh.objects.insert(mesh.objects.begin(), SceneObject{});
+  for (SceneObject& object : mesh.objects)
+    if (object.name.empty()) object.name = file;
+}
+
+/// Moves each object to its first triangle that is kept.
+void keep_objects(std::vector<SceneObject>& objects, const std::vector<bool>& keep) {
+  auto from = keep.begin();
+  std::uint32_t kept = 0;
+  for (SceneObject& object : objects) {
+    const auto first = keep.begin() + object.first_triangle;
+    kept += static_cast<std::uint32_t>(std::count(from, first, true));
+    from = first;
+    object.first_triangle = kept;
+  }
+}
+
 /// Leaves only the positions that triangles use.
 template <class Point>
 void drop_unused(std::vector<Point>& positions, std::vector<Index3>& triangles) {
@@ -130,7 +150,23 @@ void SceneBuilder::add(Mesh&& mesh, const std::filesystem::path& file, std::opti
     warnings.add({file.string()}, "has no faces");
     if (!without_faces_) without_faces_ = file;
   }
-  join(object ? objects_[*object] : mesh_, std::move(mesh));
+  name_objects(mesh, file.stem().string());
+  if (object)
+    join(objects_[*object], std::move(mesh));
+  else
+    add_to_scene(std::move(mesh));
+}
+
+void SceneBuilder::add_to_scene(Mesh&& mesh) {
+  std::map<std::string, std::string> names;  // of this mesh's objects in the scene
+  for (SceneObject& object : mesh.objects) {
+    const auto [known, is_new] = names.try_emplace(object.name, object.name);
+    while (is_new && object_names_.contains(known->second))
+      known->second = fmt::format("{}.{:03}", object.name, object_names_[object.name]++);
+    object.name = known->second;
+  }
+  for (const auto& [given, name] : names) object_names_.try_emplace(name, 1);
+  join(mesh_, std::move(mesh));
 }
 
 void SceneBuilder::join(Mesh& all, Mesh&& more) const {
@@ -144,7 +180,7 @@ void SceneBuilder::expand_instances() {
   for (const Placed& instance : instances_) {
     Mesh copy = objects_[instance.object];
     apply(instance.transform, copy);
-    join(mesh_, std::move(copy));
+    add_to_scene(std::move(copy));
   }
   objects_.clear();
   instances_.clear();
@@ -153,6 +189,7 @@ void SceneBuilder::expand_instances() {
 void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
   const std::size_t before = mesh_.triangles.size();
   if (before > 0 && std::ranges::find(keep, false) == keep.end()) return;
+  keep_objects(mesh_.objects, keep);
   keep_marked(mesh_.triangles, keep);
   keep_marked(mesh_.triangle_material, keep);
   keep_marked(mesh_.triangle_normals, keep);
@@ -262,6 +299,7 @@ Scene SceneBuilder::finish() {
   drop_unused(scene.positions, mesh_.triangles);
   scene.triangles = std::move(mesh_.triangles);
   scene.triangle_material = std::move(mesh_.triangle_material);
+  scene.objects = std::move(mesh_.objects);
   scene.normals = std::move(mesh_.normals);
   scene.triangle_normals = std::move(mesh_.triangle_normals);
   scene.uvs = std::move(mesh_.uvs);

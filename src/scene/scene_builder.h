@@ -47,7 +47,8 @@ class SceneBuilder {
   /// Notes a key of a file that means nothing here.
   void ignore(const std::filesystem::path& file, std::string_view key);
 
-  /// Adds the mesh of a file, which may have no faces; with `object`, to that.
+  /// Adds the mesh of a file, which may have no faces; with `object`, to that. What has no name in it gets
+  /// the file's; names that another mesh of the scene has are numbered.
   void add(Mesh&& mesh, const std::filesystem::path& file, std::optional<std::size_t> object = {});
 
   /// Adds an object, which is where instances place it; returns its index.
@@ -77,6 +78,7 @@ class SceneBuilder {
   };
 
   void join(Mesh& all, Mesh&& more) const;
+  void add_to_scene(Mesh&& mesh);
   void expand_instances();  ///< into meshes of their own
 
   Mesh mesh_;
@@ -84,6 +86,7 @@ class SceneBuilder {
   std::vector<Placed> instances_;
   std::optional<std::filesystem::path> without_faces_;  ///< the first such file
   std::map<std::string, int> textures_;                 ///< by what they are made of
+  std::map<std::string, int> object_names_;             ///< with the next number of each
 };
 
 }  // namespace castray
