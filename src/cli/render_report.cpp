@@ -89,7 +89,8 @@ void RenderReport::print_scene(bool verbose) const {
 }
 
 void RenderReport::print_black() const {
-  if (is_dark(scene) || !is_black(result.film)) return;
+  const bool in_bands = result.film.window() != window_of(scene.width, scene.height, options);
+  if (in_bands || is_dark(scene) || !is_black(result.film)) return;
   fmt::print(stderr, "castray: warning: the image is black: {}\n", why_black(scene, options));
 }
 

@@ -91,6 +91,7 @@ RenderResult RenderRun::run_in_bands(const Scene& scene, int band, int margin) {
     RenderOptions options = request_.options;
     options.crop = window;
     options.crop->y0 = y0, options.crop->y1 = y1;
+    const std::uint64_t nonfinite = all.film.nonfinite_samples;
     all.film = {};  // its memory is needed
     RenderResult result = render(prepared, options, [&](const Progress& p) {
       const double done = y0 - window.y0 + p.fraction * (y1 - y0);
@@ -99,6 +100,7 @@ RenderResult RenderRun::run_in_bands(const Scene& scene, int band, int margin) {
     if (result.stats.stopped != Stopped::done) throw BandsInterrupted();
     result.stats = sum_of(all.stats, std::move(result.stats));
     all = std::move(result);
+    all.film.nonfinite_samples += nonfinite;
     return all.film;
   };
   write_film_in_bands(

@@ -31,7 +31,8 @@ class RenderRun {
   RenderResult run(const Scene& scene);
 
   /// Renders so many rows at a time, with a margin above and below of which their image depends, and writes
-  /// them to the outputs. The result's film is that of the last rows. Throws BandsInterrupted.
+  /// them to the outputs. The result's film is that of the last rows, with the number of all samples that
+  /// were not finite. Throws BandsInterrupted.
   RenderResult run_in_bands(const Scene& scene, int band, int margin);
 
   /// Writes the film to the checkpoint, then to the outputs.
