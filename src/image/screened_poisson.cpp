@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 namespace castray {
@@ -15,6 +16,7 @@ constexpr float cycle_steps[] = {6.24f, 1.818f, 1.064f};
 constexpr float first_step = 0.5617f, second_step = 1.389f;
 constexpr int worth_threads = 1 << 16;  ///< pixels
 constexpr int coarsest_side = 2, coarsest_sweeps = 4;
+constexpr int rows_of_a_strip = 16, rows_around = 2;  ///< even
 
 /// One grid of the hierarchy. Each coarser one has a pixel for every 2x2 (Brandt 1977).
 struct Level {
@@ -27,42 +29,118 @@ struct Level {
   }
 };
 
+/// One plane of a strip of rows and of those around it, in the cache of a thread.
+class StripPlane {
+ public:
+  explicit StripPlane(int width) : plane_(width, rows_of_a_strip + 2 * rows_around) {}
+  void begin_at(int y) { first_ = y - rows_around; }
+  float* row(int y) { return plane_.row(y - first_); }
+
+ private:
+  PixelPlane plane_;
+  int first_ = 0;
+};
+
+/// Where sweeps over the rows begin <= y < end put what is between them.
+struct Strip {
+  int begin = 0, end = 0;
+  StripPlane even, odd;
+
+  explicit Strip(int width) : even(width), odd(width) {}
+};
+
+/// Row y of a step from zero. Rows around the image are zero.
+void start_row(const Level& level, std::size_t c, int y, StripPlane& to) {
+  float* x = to.row(y);
+  if (y < 0 || y >= level.a.height) {
+    std::fill_n(x, level.a.width, 0.f);
+    return;
+  }
+  const float *inverse = level.inverse_diagonal.row(y), *b = level.b[c].row(y);
+  for (int i = 0; i < level.a.width; ++i) x[i] = first_step * inverse[i] * b[i];
+}
+
+/// Row y of a damped Jacobi step.
+template <class From, class To>
+void relax_row(const Level& level, std::size_t c, int y, float step, From& from, To& to) {
+  float* __restrict next = to.row(y);
+  if (y < 0 || y >= level.a.height) {
+    std::fill_n(next, level.a.width, 0.f);
+    return;
+  }
+  const float *right = level.a.right.row(y), *below = level.a.below.row(y), *above = level.a.below.row(y - 1),
+              *inverse = level.inverse_diagonal.row(y), *b = level.b[c].row(y), *x = from.row(y),
+              *up = from.row(y - 1), *down = from.row(y + 1);
+  for (int i = 0; i < level.a.width; ++i) {
+    const float pull =
+        b[i] + ((right[i] * x[i + 1] + right[i - 1] * x[i - 1]) + (below[i] * down[i] + above[i] * up[i]));
+    next[i] = x[i] + step * (inverse[i] * pull - x[i]);
+  }
+}
+
+/// Adds the residual of row y, summed over pairs of pixels.
+void add_residual(const Level& level, std::size_t c, int y, StripPlane& from, float* sums) {
+  const PixelCouplings& a = level.a;
+  const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
+              *above = a.below.row(y - 1), *b = level.b[c].row(y), *x = from.row(y), *up = from.row(y - 1),
+              *down = from.row(y + 1);
+  const auto residual = [&](int i) {
+    return (b[i] - screen[i] * x[i]) + ((right[i] * (x[i + 1] - x[i]) + right[i - 1] * (x[i - 1] - x[i])) +
+                                        (below[i] * (down[i] - x[i]) + above[i] * (up[i] - x[i])));
+  };
+  const int pairs = a.width / 2;
+  for (int i = 0; i < pairs; ++i) sums[i] += residual(2 * i) + residual(2 * i + 1);
+  if (a.width % 2 == 1) sums[pairs] += residual(a.width - 1);
+}
+
 class Multigrid {
  public:
   Multigrid(PixelCouplings couplings, PixelPlanes b, int threads) : threads_(threads) {
     levels_.emplace_back(std::move(couplings));
     levels_[0].b = std::move(b);
     invert_diagonal(levels_[0]);
-    while (std::max(levels_.back().a.width, levels_.back().a.height) > coarsest_side) {
+    do {
       levels_.emplace_back(coarser(levels_.back().a));
       for (PixelPlane& plane : levels_.back().b)
         plane = PixelPlane(levels_.back().a.width, levels_.back().a.height);
       invert_diagonal(levels_.back());
-    }
+    } while (std::max(levels_.back().a.width, levels_.back().a.height) > coarsest_side);
   }
 
   PixelPlanes solve() {
-    Level& finest = levels_[0];
-    PixelPlanes before = finest.x;  // zero
-    start(finest);
     for (std::size_t i = 0; i < std::size(cycle_steps); ++i) {
-      cycle(0, i > 0);
-      go_further(finest, before, cycle_steps[i]);
-      before = finest.x;
+      go_down(0, i > 0);
+      go_up(0, cycle_steps[i]);
     }
-    return before;
+    return std::move(levels_[0].x);
   }
 
  private:
-  template <class Row>
-  void for_rows(const Level& level, Row row) const {
-    const int threads = level.a.width * level.a.height >= worth_threads ? threads_ : 1;
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int y = 0; y < level.a.height; ++y) row(y);
+  int threads_for(const Level& level) const {
+    return level.a.width * level.a.height >= worth_threads ? threads_ : 1;
+  }
+
+  /// `work(strip, c)`: what is to be done to a channel of a strip. Several sweeps of a strip, one after the
+  /// other, read memory once; rows around it are then swept twice.
+  template <class Work>
+  void for_strips(const Level& level, Work work) const {
+#pragma omp parallel num_threads(threads_for(level))
+    {
+      Strip strip(level.a.width);
+#pragma omp for schedule(static)
+      for (int y = 0; y < level.a.height; y += rows_of_a_strip) {
+        strip.begin = y;
+        strip.end = std::min(y + rows_of_a_strip, level.a.height);
+        strip.even.begin_at(y);
+        strip.odd.begin_at(y);
+        for (std::size_t c = 0; c < 3; ++c) work(strip, c);
+      }
+    }
   }
 
   void invert_diagonal(Level& level) const {
-    for_rows(level, [&](int y) {
+#pragma omp parallel for schedule(static) num_threads(threads_for(level))
+    for (int y = 0; y < level.a.height; ++y) {
       const PixelCouplings& a = level.a;
       const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
                   *above = a.below.row(y - 1);
@@ -71,120 +149,97 @@ class Multigrid {
         const float diagonal = screen[x] + right[x] + right[x - 1] + below[x] + above[x];
         inverse[x] = diagonal > 0 ? 1 / diagonal : 0;
       }
-    });
+    }
   }
 
   /// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks: with it a
   /// cycle lessens every error, whatever the couplings.
   PixelCouplings coarser(const PixelCouplings& fine) const {
     PixelCouplings coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
-    for (int y = 0; y < fine.height; ++y) {
-      const float *right = fine.right.row(y), *below = fine.below.row(y);
-      float *screen = coarse.screen.row(y / 2), *to_right = coarse.right.row(y / 2),
-            *to_below = coarse.below.row(y / 2);
-      for (int x = 0; x < fine.width; ++x) screen[x / 2] += fine.screen.row(y)[x];
-      for (int x = 1; x + 1 < fine.width; x += 2) to_right[x / 2] += right[x];
-      if (y % 2 == 1 && y + 1 < fine.height)
-        for (int x = 0; x < fine.width; ++x) to_below[x / 2] += below[x];
+#pragma omp parallel for schedule(static) num_threads(threads_for(levels_.back()))
+    for (int y = 0; y < coarse.height; ++y) {
+      float *screen = coarse.screen.row(y), *to_right = coarse.right.row(y), *to_below = coarse.below.row(y);
+      for (int row = 2 * y; row < std::min(2 * y + 2, fine.height); ++row) {
+        const float *right = fine.right.row(row), *below = fine.below.row(row);
+        for (int x = 0; x < fine.width; ++x) screen[x / 2] += fine.screen.row(row)[x];
+        for (int x = 1; x + 1 < fine.width; x += 2) to_right[x / 2] += right[x];
+        if (row % 2 == 1 && row + 1 < fine.height)
+          for (int x = 0; x < fine.width; ++x) to_below[x / 2] += below[x];
+      }
     }
     return coarse;
   }
 
-  /// One step from zero.
-  void start(Level& level) const {
-    for_rows(level, [&](int y) {
-      const float* inverse = level.inverse_diagonal.row(y);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float* b = level.b[c].row(y);
-        float* x = level.x[c].row(y);
-        for (int i = 0; i < level.a.width; ++i) x[i] = first_step * inverse[i] * b[i];
+  /// The first half of a V-cycle, on level i and coarser ones: two Jacobi steps, and the sums of the residual
+  /// over blocks of 2x2 as the coarser grid's b. `relaxed`: from x, else from zero.
+  void go_down(std::size_t i, bool relaxed) {
+    Level &level = levels_[i], &coarse = levels_[i + 1];
+    for_strips(level, [&](Strip& strip, std::size_t c) {
+      for (int y = strip.begin - 2; y < strip.end + 2; ++y) {
+        if (relaxed)
+          relax_row(level, c, y, first_step, level.x[c], strip.even);
+        else
+          start_row(level, c, y, strip.even);
+      }
+      for (int y = strip.begin - 1; y < strip.end + 1; ++y)
+        relax_row(level, c, y, second_step, strip.even, strip.odd);
+      for (int y = strip.begin; y < strip.end; ++y) {
+        std::copy_n(strip.odd.row(y), level.a.width, level.next[c].row(y));
+        float* sums = coarse.b[c].row(y / 2);
+        if (y % 2 == 0) std::fill_n(sums, coarse.a.width, 0.f);
+        add_residual(level, c, y, strip.odd, sums);
       }
     });
+    std::swap(level.x, level.next);
+    if (i + 2 < levels_.size())
+      go_down(i + 1, false);
+    else
+      solve_coarsest();
   }
 
-  /// A damped Jacobi step.
-  void relax(Level& level, float step) const {
-    for_rows(level, [&](int y) {
-      const float *right = level.a.right.row(y), *below = level.a.below.row(y),
-                  *above = level.a.below.row(y - 1), *inverse = level.inverse_diagonal.row(y);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float *b = level.b[c].row(y), *x = level.x[c].row(y), *up = level.x[c].row(y - 1),
-                    *down = level.x[c].row(y + 1);
-        float* __restrict next = level.next[c].row(y);
-        for (int i = 0; i < level.a.width; ++i) {
-          const float pull = b[i] + ((right[i] * x[i + 1] + right[i - 1] * x[i - 1]) +
-                                     (below[i] * down[i] + above[i] * up[i]));
-          next[i] = x[i] + step * (inverse[i] * pull - x[i]);
-        }
+  /// The second half: corrections of coarser grids, and two Jacobi steps. `further`: how far to go from the x
+  /// before the cycle, which `go_down` has put into `next`, in the direction of the result.
+  void go_up(std::size_t i, std::optional<float> further) {
+    Level &level = levels_[i], &coarse = levels_[i + 1];
+    if (i + 2 < levels_.size()) go_up(i + 1, {});
+    for_strips(level, [&](Strip& strip, std::size_t c) {
+      for (int y = strip.begin - 2; y < strip.end + 2; ++y) add_coarse(coarse, level, c, y, strip.even);
+      for (int y = strip.begin - 1; y < strip.end + 1; ++y)
+        relax_row(level, c, y, second_step, strip.even, strip.odd);
+      for (int y = strip.begin; y < strip.end; ++y) {
+        float* next = level.next[c].row(y);
+        relax_row(level, c, y, first_step, strip.odd, strip.even);
+        const float* x = strip.even.row(y);
+        if (further)
+          for (int k = 0; k < level.a.width; ++k) next[k] += *further * (x[k] - next[k]);
+        else
+          std::copy_n(x, level.a.width, next);
       }
     });
     std::swap(level.x, level.next);
   }
 
-  /// The sums of the residual over blocks of 2x2, as the coarser grid's b.
-  void restrict_residual(const Level& level, Level& coarse) const {
-    for_rows(coarse, [&](int y) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        float* sums = coarse.b[c].row(y);
-        std::fill(sums, sums + coarse.a.width, 0.f);
-        for (int fine = 2 * y; fine < std::min(2 * y + 2, level.a.height); ++fine)
-          add_residual(level, c, fine, sums);
-      }
-    });
-  }
-
-  static void add_residual(const Level& level, std::size_t c, int y, float* sums) {
-    const PixelCouplings& a = level.a;
-    const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
-                *above = a.below.row(y - 1), *b = level.b[c].row(y), *x = level.x[c].row(y),
-                *up = level.x[c].row(y - 1), *down = level.x[c].row(y + 1);
-    const auto residual = [&](int i) {
-      return (b[i] - screen[i] * x[i]) + ((right[i] * (x[i + 1] - x[i]) + right[i - 1] * (x[i - 1] - x[i])) +
-                                          (below[i] * (down[i] - x[i]) + above[i] * (up[i] - x[i])));
-    };
-    const int pairs = a.width / 2;
-    for (int i = 0; i < pairs; ++i) sums[i] += residual(2 * i) + residual(2 * i + 1);
-    if (a.width % 2 == 1) sums[pairs] += residual(a.width - 1);
-  }
-
-  void add_coarse(const Level& coarse, Level& level) const {
-    for_rows(level, [&](int y) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float* from = coarse.x[c].row(y / 2);
-        float* x = level.x[c].row(y);
-        for (int i = 0; i < level.a.width; ++i) x[i] += from[i / 2];
-      }
-    });
-  }
-
-  /// Goes from `before` in the direction of the cycle's result.
-  void go_further(Level& level, const PixelPlanes& before, float step) const {
-    for_rows(level, [&](int y) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const float* from = before[c].row(y);
-        float* x = level.x[c].row(y);
-        for (int i = 0; i < level.a.width; ++i) x[i] = from[i] + step * (x[i] - from[i]);
-      }
-    });
-  }
-
-  /// A V-cycle. `relaxed`: x is not from `start`.
-  void cycle(std::size_t i, bool relaxed) {
-    Level& level = levels_[i];
-    if (relaxed) relax(level, first_step);
-    relax(level, second_step);
-    if (i + 1 == levels_.size()) {
-      for (int sweep = 0; sweep < coarsest_sweeps; ++sweep)
-        relax(level, first_step), relax(level, second_step);
+  static void add_coarse(const Level& coarse, const Level& level, std::size_t c, int y, StripPlane& to) {
+    float* sum = to.row(y);
+    if (y < 0 || y >= level.a.height) {
+      std::fill_n(sum, level.a.width, 0.f);
       return;
     }
-    Level& coarse = levels_[i + 1];
-    restrict_residual(level, coarse);
-    start(coarse);
-    cycle(i + 1, false);
-    add_coarse(coarse, level);
-    relax(level, second_step);
-    relax(level, first_step);
+    const float *x = level.x[c].row(y), *more = coarse.x[c].row(y / 2);
+    for (int k = 0; k < level.a.width; ++k) sum[k] = x[k] + more[k / 2];
+  }
+
+  void solve_coarsest() {
+    Level& level = levels_.back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      PixelPlane &x = level.x[c], &next = level.next[c];
+      const auto relax = [&](float step) {
+        for (int y = 0; y < level.a.height; ++y) relax_row(level, c, y, step, x, next);
+        std::swap(x, next);
+      };
+      std::fill(x.values.begin(), x.values.end(), 0.f);
+      for (int sweep = 0; sweep <= coarsest_sweeps; ++sweep) relax(first_step), relax(second_step);
+    }
   }
 
   int threads_;
