@@ -62,7 +62,7 @@ struct RenderOptions {
   bool generic = false;
   Reuse reuse;
   /// Whether the film keeps differences, from which its image is reconstructed (`image_of`). `automatic`:
-  /// where paths are shared, but not with a target error or replicates. `on`: then paths are shared, too.
+  /// where paths are shared and lamps alone shine; not with target error or replicates. `on`: shares paths.
   Switch reconstruct = Switch::off;
   std::optional<double> time_limit;  ///< seconds; every pixel gets a sample, however long that takes
   /// An early stop comes at the end of a pass over the image, so that the film can be resumed. Else it comes

@@ -57,8 +57,7 @@ MemoryNeed memory_need(const Scene& scene, const RenderOptions& options) {
   MemoryNeed need;
   need.scene = resident_bytes();
   need.preparation = bytes_to_prepare(scene, plan, options.integrator);
-  need.differences = options.integrator != Integrator::reference && plan.suffixes > 0 &&
-                     options.reconstruct != Switch::off && !options.target_error;
+  need.differences = options.integrator != Integrator::reference && keeps_differences(options, plan);
   Film film({1, 1, 0, 0, 1, 1}, 1);
   if (plan.light_paths) film.keep_splats();
   if (need.differences) film.keep_differences();

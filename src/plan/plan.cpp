@@ -76,6 +76,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
+  plan.lamps_alone = !needs.environment;
   plan.environment_points = needs.environment && scene.environment_image.used() ? 16 : 0;
   plan.mis = uses_mis(options.mis, scene, std::max(1.0, double(plan.suffixes) / plan.light_points));
   plan.light_paths = may_have_light_paths(needs) && options.caustics != Switch::off;
@@ -102,6 +103,12 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   skip(plan.light_paths, "paths from lights");
   skip(plan.mis, "multiple importance sampling");
   return plan;
+}
+
+bool keeps_differences(const RenderOptions& options, const Plan& plan) {
+  const bool wanted =
+      options.reconstruct == Switch::on || (options.reconstruct == Switch::automatic && plan.lamps_alone);
+  return wanted && plan.suffixes > 0 && !options.target_error && options.max_depth != 1;
 }
 
 void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain) {

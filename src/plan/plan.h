@@ -19,6 +19,7 @@ struct Plan {
   int light_points = 0;                      ///< shared by each tile
   int environment_points = 0;                ///< likewise
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
+  bool lamps_alone = false;                  ///< no light comes from outside the scene
   std::size_t light_regions = 0;             ///< from which it is known what lights are seen; 0: it is not
   double gain_of_regions = 1;               ///< how many times smaller they make a light sample's mean square
   bool lights_by_solid_angle = false;       ///< points on them, where that can be had
@@ -31,6 +32,10 @@ struct Plan {
 /// For an image of the window's full size. Automatic sharing is on here; a pilot may take it back
 /// (choose_by_pilot).
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
+
+/// Whether films keep what images are reconstructed from. `Switch::automatic`: where paths are shared and
+/// light comes from lamps alone. Under a sky, what a tile's paths share has little noise of its own.
+bool keeps_differences(const RenderOptions& options, const Plan& plan);
 
 /// Lets the choice of lights know what is seen from regions, by which light samples have a mean square that
 /// many times smaller, and says so in Plan::kernel.

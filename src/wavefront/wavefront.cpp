@@ -57,13 +57,6 @@ struct Workplace {
   }
 };
 
-/// Whether the film keeps what an image is reconstructed from. However many samples are asked for: those of
-/// parts and of longer renders are the same.
-bool keeps_differences(const Job& job, const Plan& plan) {
-  const RenderOptions& o = job.options;
-  return plan.suffixes > 0 && o.reconstruct != Switch::off && !o.target_error && o.max_depth != 1;
-}
-
 /// Splats are spread over their pixels, and no sample's part to clamp.
 bool traces_light_paths(const RenderOptions& options, const Plan& plan) {
   return plan.light_paths && options.jitter && !options.clamp_indirect;
@@ -155,7 +148,7 @@ class WavefrontRun {
                const Job& job)
       : window_(job.window),
         scene_(data.view),
-        differences_(keeps_differences(job, plan)),
+        differences_(keeps_differences(job.options, plan)),
         edge_emission_(scene, kernel, data, window_, job.options),
         options_(kernel_options(job.options, plan, differences_)),
         render_tiles_(kernel.render_tiles[plan.features]),
@@ -390,7 +383,7 @@ class Wavefront final : public PreparedIntegrator {
     const auto run = std::make_shared<WavefrontRun>(scene_, kernel_, data_, plan_, job);
     const int top = job.window.y0;
     return {
-        tile_size, true, traces_light_paths(job.options, plan_), keeps_differences(job, plan_),
+        tile_size, true, traces_light_paths(job.options, plan_), keeps_differences(job.options, plan_),
         [run, top](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film,
                    RowStats& stats) { run->render_band((y0 - top) / tile_size, samples, map, film, stats); }};
   }
@@ -399,7 +392,7 @@ class Wavefront final : public PreparedIntegrator {
   std::string decisions(const Job& job) const override {
     std::string items = plan_.light_paths ? "; light-paths=on" : "";
     items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
-    if (keeps_differences(job, plan_)) items += "; reconstruct=on";
+    if (keeps_differences(job.options, plan_)) items += "; reconstruct=on";
     if (plan_.light_regions > 0) items += "; light-choice=learned";
     return items;
   }

@@ -41,14 +41,17 @@ TEST_CASE("render, merge, convert and compare make the same image of the same fi
 
 TEST_CASE("without reconstruction a film has no differences, and an image is the means") {
   const TemporaryFolder folder;
-  const auto size_of = [&](const Words& more) {
-    Words words = {"render", box, "-q", "--size", "48x40", "--spp", "4", "-o", "a.film"};
+  const auto size_of = [&](const Words& more, const std::string& scene = box) {
+    Words words = {"render", scene, "-q", "--size", "48x40", "--spp", "4", "-o", "a.film"};
     words.insert(words.end(), more.begin(), more.end());
     REQUIRE(run_castray(words, folder.path()).exit_code == 0);
     return std::filesystem::file_size(folder / "a.film");
   };
   constexpr std::size_t pixels = 48 * 40;
   CHECK(size_of({"--reconstruct", "auto"}) > 220 * pixels);
+  const std::string outdoors = CASTRAY_ROOT "/scenes/kinds/sky_and_ground.json";
+  CHECK(size_of({"--reconstruct", "on"}, outdoors) > 220 * pixels);
+  CHECK(size_of({"--reconstruct", "auto"}, outdoors) < 53 * pixels + 1000);
   for (const Words& plain :
        {Words{}, Words{"--reconstruct", "auto", "--reuse", "off"}, Words{"--reconstruct", "off"}})
     CHECK(size_of(plain) < 53 * pixels + 1000);
