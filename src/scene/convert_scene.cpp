@@ -12,6 +12,7 @@
 #include "castray/image.h"
 #include "castray/scene_files.h"
 #include "core/files.h"
+#include "core/text.h"
 #include "scene/gltf_scene.h"
 #include "scene/gltf_texture.h"
 #include "scene/material_writer.h"
@@ -76,6 +77,10 @@ Json view_json(const Scene& scene) {
 }
 
 std::string png_of(const Texture& texture) {
+  if (texture.bytes.empty())
+    throw InputError(
+        "the image '" + printable(texture.name) +
+        "' is mirrored, and has more than 8 bits a value: it cannot be written beside the scene file");
   std::string bytes;
   const auto append = [](void* to, void* from, int size) {
     static_cast<std::string*>(to)->append(static_cast<char*>(from), static_cast<std::size_t>(size));

@@ -180,7 +180,11 @@ class GltfMaterialReader {
                                                 : MaterialType::diffuse;
   }
 
-  double ior() { return number_in(find_extension(m_.extensions, "KHR_materials_ior"), "ior", 1.5); }
+  /// glTF's 0 stands for none.
+  double ior() {
+    const double n = number_in(find_extension(m_.extensions, "KHR_materials_ior"), "ior", 1.5);
+    return n > 0 ? n : 1.5;
+  }
 
   /// Glass, where most of the light passes.
   bool set_transmission() {
@@ -195,19 +199,46 @@ class GltfMaterialReader {
     const tinygltf::Value* volume = find_extension(m_.extensions, "KHR_materials_volume");
     if (find_value(volume, "attenuationDistance"))
       warn("what glass absorbs on the way through it is left out");
-    if (!(number_in(volume, "thicknessFactor", 0) > 0))
-      warn("a thin wall (KHR_materials_transmission without a volume) refracts as solid glass does");
+    if (number_in(volume, "thicknessFactor", 0) > 0)
+      set_solid_glass();
+    else
+      set_thin_wall();
+    return true;
+  }
+
+  void set_solid_glass() {
     out_.type = MaterialType::dielectric;
-    out_.ior = ior() > 0 ? ior() : 1.5;
+    out_.ior = ior();
     out_.transmittance = out_.kd;
     out_.map(Parameter::transmittance) = std::exchange(out_.map(Parameter::kd), {});
-    return true;
+  }
+
+  /// A pane: what its two sides do not reflect passes unbent, as through a surface that covers only a share
+  /// of itself. Between the sides light goes to and fro: they reflect r + r (1 - r)^2 / (1 - r^2) of it.
+  void set_thin_wall() {
+    const double reflected = 2 * f0() / (1 + f0());
+    const double passed = (1 - reflected) * luminance(out_.kd);
+    const auto [low, high] = std::minmax({out_.kd.x, out_.kd.y, out_.kd.z});
+    if (low != high || out_.map(Parameter::kd).used())
+      warn("a thin wall of glass has no colour, only its luminance");
+    if (out_.alpha > 0) warn("a thin wall of glass does not blur what is behind it");
+    const double there = 1 - passed;
+    out_.type = MaterialType::conductor;
+    out_.map(Parameter::kd) = {};
+    out_.reflectance = Vec3d(there > 0 ? reflected / there : 0);
+    out_.coverage *= there;
+    out_.vertex_colors = false;
+  }
+
+  /// Reflectance straight on.
+  double f0() {
+    const double n = ior();
+    return (n - 1) * (n - 1) / ((n + 1) * (n + 1));
   }
 
   /// Of what is no metal, straight on.
   void set_specular() {
-    const double n = ior() == 0 ? 1.5 : ior(), f0 = (n - 1) * (n - 1) / ((n + 1) * (n + 1));
-    const Vec3d tint = vector_in(textures_.specular, "specularColorFactor", Vec3d(1)) * f0;
+    const Vec3d tint = vector_in(textures_.specular, "specularColorFactor", Vec3d(1)) * f0();
     const double factor = unit(number_in(textures_.specular, "specularFactor", 1), "specularFactor");
     for (int c = 0; c < 3; ++c) out_.ks[c] = std::clamp(tint[c], 0.0, 1.0) * factor;
     const bool has_color = set_map(Parameter::ks, textures_.specular_color, ColorSpace::srgb);

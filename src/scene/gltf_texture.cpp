@@ -56,6 +56,47 @@ int add_image(const GltfDocument& document, std::size_t image, ColorSpace space,
   return builder.add_texture(file->path, space, meaning);
 }
 
+/// An image and, beside or above it, its mirror image: repeated, it is the image mirrored at its borders.
+Texture with_mirror_images(const Texture& image, bool beside, bool above) {
+  const auto w = static_cast<std::size_t>(image.width), h = static_cast<std::size_t>(image.height);
+  const auto channels = static_cast<std::size_t>(image.channels);
+  const std::size_t width = beside ? 2 * w : w, height = above ? 2 * h : h;
+  const auto copy = [&]<class T>(const std::vector<T>& from) {
+    std::vector<T> to;
+    if (from.empty()) return to;
+    to.reserve(width * height * channels);
+    for (std::size_t y = 0; y < height; ++y)
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t row = !above ? y : y < h ? h - 1 - y : y - h, column = x < w ? x : 2 * w - 1 - x;
+        const auto texel = from.begin() + static_cast<std::ptrdiff_t>((row * w + column) * channels);
+        to.insert(to.end(), texel, texel + image.channels);
+      }
+    return to;
+  };
+  Texture mirrored{.name = image.name,
+                   .width = static_cast<int>(width),
+                   .height = static_cast<int>(height),
+                   .channels = image.channels,
+                   .color_space = image.color_space};
+  mirrored.bytes = copy(image.bytes), mirrored.floats = copy(image.floats);
+  return mirrored;
+}
+
+/// Makes `map` read its image mirrored at its borders across u or v. Returns false where the image is too
+/// large for that.
+bool mirror(bool across_u, bool across_v, SceneBuilder& builder, TextureMap& map) {
+  const int image = map.texture;
+  const Texture& once = builder.scene.textures[static_cast<std::size_t>(image)];
+  if (static_cast<long long>(once.width) * once.height > max_image_pixels / 4) return false;
+  map.texture = builder.add_texture(fmt::format("mirrored {} {} {}", image, across_u, across_v), [&] {
+    return with_mirror_images(builder.scene.textures[static_cast<std::size_t>(image)], across_u, across_v);
+  });
+  const bool across[] = {across_u, across_v};
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (across[axis]) map.scale[axis] /= 2, map.offset[axis] /= 2;
+  return true;
+}
+
 void set_wrap(const GltfDocument& document, int sampler, std::size_t texture, SceneBuilder& builder,
               TextureMap& map) {
   if (sampler < 0) return;
@@ -63,10 +104,13 @@ void set_wrap(const GltfDocument& document, int sampler, std::size_t texture, Sc
   const auto warn = [&](const char* what) {
     document.warn(builder.warnings, "samplers", static_cast<std::size_t>(sampler), what);
   };
-  map.clamp = s.wrapS == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE && s.wrapT == s.wrapS;
-  if (s.wrapS == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT || s.wrapT == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT)
-    warn("mirrored images are repeated as they are");
-  else if (s.wrapS != s.wrapT)
+  const auto is = [&s](int wrap) { return std::pair{s.wrapS == wrap, s.wrapT == wrap}; };
+  const auto [mirrors_u, mirrors_v] = is(TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT);
+  const auto [clamps_u, clamps_v] = is(TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE);
+  map.clamp = clamps_u && clamps_v;
+  if ((mirrors_u || mirrors_v) && !mirror(mirrors_u, mirrors_v, builder, map))
+    warn("an image of more than 2^26 pixels is not mirrored but repeated");
+  if (clamps_u != clamps_v)
     warn("an image that is clamped one way and repeated the other is repeated both ways");
   if (s.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST)
     warn("images are interpolated between texels, whatever the filter");
@@ -118,12 +162,12 @@ std::optional<TextureMap> make_map(const GltfDocument& document, const GltfTextu
   document.at(document.model.images, texture.source, "images", "textures", number);
   TextureMap map;
   if (!turned_with_mesh) place_on_mesh(use.transform, map);
-  set_wrap(document, texture.sampler, number, builder, map);
   try {
     map.texture = add_image(document, static_cast<std::size_t>(texture.source), space, meaning, builder);
   } catch (const InputError& error) {
     return leave_out(fmt::format("an image is left out: {}", error.what()));
   }
+  set_wrap(document, texture.sampler, number, builder, map);
   return map;
 }
 
