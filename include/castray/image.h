@@ -126,6 +126,9 @@ struct ImageFile {
 /// it, if there, taken for exact. Throws InputError that says what is wrong with the file.
 ImageFile read_image(const std::filesystem::path& file, const std::string& layer = "");
 
+/// The layer of this name of an EXR file, none where the file has none. Throws InputError.
+std::optional<Image> read_layer(const std::filesystem::path& file, const std::string& layer);
+
 /// The same pixels, as the file stores them: for textures, which keep bytes as bytes.
 Raster read_raster(const std::filesystem::path& file);
 
@@ -165,6 +168,9 @@ bool is_encoded_format(const std::filesystem::path& file);
 
 /// Whether the suffix is that of a format whose files may hold several layers, .exr.
 bool has_layers(const std::filesystem::path& file);
+
+/// Whether files of the suffix's format say what `Metadata` says: .exr and .png.
+bool holds_metadata(const std::filesystem::path& file);
 
 /// Whether the suffix is .film.
 bool is_film_format(const std::filesystem::path& file);

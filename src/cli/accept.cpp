@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "castray/denoise.h"
 #include "castray/error.h"
 #include "castray/image.h"
 #include "cli/commands.h"
@@ -32,7 +33,7 @@ void accept_file(const fs::path& image, const fs::path& reference) {
   if (suffix_of(image) != suffix_of(reference))
     throw InputError({reference.string()},
                      "has another suffix than " + image.string() + "; convert the image first");
-  read_image(image);
+  refuse_denoised(image, read_image(image).metadata, "it cannot be a reference");
   replace_file(image, reference);
   if (suffix_of(image) == ".pfm" && fs::exists(variance_file(image)))
     replace_file(variance_file(image), variance_file(reference));

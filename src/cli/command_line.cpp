@@ -33,6 +33,7 @@ constexpr Subcommand subcommands[] = {
     {"merge", "add films of one render: parts, sample ranges, crops", add_merge},
     {"submit", "render in parts on many machines, and merge them", add_submit},
     {"convert", "write an image in another format, or a scene as a scene file", add_convert},
+    {"denoise", "less noise by Open Image Denoise, with bias", add_denoise},
     {"completions", "print what makes a shell complete castray's flags, or the manual page", add_completions},
 };
 

@@ -20,6 +20,7 @@ Run add_serve(Arguments& arguments, const CommonFlags& common);
 Run add_submit(Arguments& arguments, const CommonFlags& common);
 Run add_convert(Arguments& arguments, const CommonFlags& common);
 Run add_bench(Arguments& arguments, const CommonFlags& common);
+Run add_denoise(Arguments& arguments, const CommonFlags& common);
 Run add_completions(Arguments& arguments, const CommonFlags& common);
 
 }  // namespace castray::cli

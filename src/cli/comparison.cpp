@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "castray/denoise.h"
 #include "castray/error.h"
 
 namespace castray::cli {
@@ -64,6 +65,8 @@ void measure_alpha(Comparison& c, const Files& files) {
 
 void measure_noise(Comparison& c, const Files& files) {
   if (!c.limits.ztest) return;
+  refuse_denoised(c.image_file, files.image.metadata, "no z-test can judge it");
+  refuse_denoised(c.reference_file, files.reference.metadata, "no z-test can judge by it");
   int left = 0, top = 0;  // the test tells places in the full image
   if (is_film_format(c.image_file) && is_film_format(c.reference_file)) {
     const Film film = read_film(c.image_file);

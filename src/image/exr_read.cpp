@@ -188,6 +188,14 @@ std::vector<std::string> others(const std::vector<ExrLayer>& layers, const ExrLa
   return names;
 }
 
+bool has_layer(const std::string& name, std::string_view bytes, const std::string& layer_name) {
+  check_exr_headers(name, bytes);
+  BytesIn in(name, bytes);
+  const Imf::MultiPartInputFile file(in, 0);
+  return std::ranges::any_of(layers_of(parts_of(file)),
+                             [&](const ExrLayer& layer) { return layer.name == layer_name; });
+}
+
 Decoded read_from(const std::string& name, std::string_view bytes, const std::string& layer_name) {
   check_exr_headers(name, bytes);
   BytesIn in(name, bytes);
@@ -213,14 +221,24 @@ Decoded read_from(const std::string& name, std::string_view bytes, const std::st
   return decoded;
 }
 
-}  // namespace
-
-Decoded read_exr(const std::string& name, std::string_view bytes, const std::string& layer) {
+/// What `read` finds; its errors become InputErrors of this file.
+template <class Read>
+auto guarded(const std::string& name, Read read) {
   try {
-    return read_from(name, bytes, layer);
+    return read();
   } catch (const std::exception& error) {
     throw InputError({name}, std::string("cannot be read as OpenEXR: ") + error.what());
   }
+}
+
+}  // namespace
+
+Decoded read_exr(const std::string& name, std::string_view bytes, const std::string& layer) {
+  return guarded(name, [&] { return read_from(name, bytes, layer); });
+}
+
+bool has_exr_layer(const std::string& name, std::string_view bytes, const std::string& layer) {
+  return guarded(name, [&] { return has_layer(name, bytes, layer); });
 }
 
 }  // namespace castray

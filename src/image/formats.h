@@ -23,6 +23,8 @@ Decoded read_pfm(const std::string& name, std::string_view bytes);
 Decoded read_png(const std::string& name, std::string_view bytes);
 Decoded read_hdr(const std::string& name, std::string_view bytes);
 Decoded read_exr(const std::string& name, std::string_view bytes, const std::string& layer);
+/// Whether it has a layer of this name.
+bool has_exr_layer(const std::string& name, std::string_view bytes, const std::string& layer);
 Film parse_film(const std::string& name, std::string_view bytes);
 
 /// By stb_image.

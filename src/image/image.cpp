@@ -139,6 +139,12 @@ ImageFile read_image(const std::filesystem::path& file, const std::string& layer
   return result;
 }
 
+std::optional<Image> read_layer(const std::filesystem::path& file, const std::string& layer) {
+  const std::string bytes = read_file(file);
+  if (!has_exr_layer(file.string(), bytes, layer)) return std::nullopt;
+  return colours_of(read_exr(file.string(), bytes, layer).raster);
+}
+
 Raster read_raster(const std::filesystem::path& file) { return parse_raster(file, read_file(file)); }
 
 Raster parse_raster(const std::filesystem::path& file, std::string_view bytes) {
@@ -210,6 +216,10 @@ bool is_variance_file(const std::filesystem::path& file) {
 bool is_image_format(const std::filesystem::path& file) { return find_format(file); }
 bool is_encoded_format(const std::filesystem::path& file) { return format_of(file).is_encoded; }
 bool has_layers(const std::filesystem::path& file) { return format_of(file).read == read_exr; }
+bool holds_metadata(const std::filesystem::path& file) {
+  const Write write = format_of(file).write;
+  return write == write_exr || write == write_png;
+}
 bool is_film_format(const std::filesystem::path& file) { return is_film(format_of(file)); }
 
 }  // namespace castray

@@ -25,7 +25,8 @@ const std::string whole = "must be a whole number between ";
 
 const std::vector<Case> cases = {
     {{},
-     "say what to do: render, serve, compare, accept, bench, info, merge, submit, convert, completions; see "
+     "say what to do: render, serve, compare, accept, bench, info, merge, submit, convert, denoise, "
+     "completions; see "
      "castray "
      "--help"},
     {{"rendr"}, "unknown subcommand 'rendr'; did you mean 'render'?"},
@@ -43,7 +44,7 @@ const std::vector<Case> cases = {
     {{"bench", "s.json", "--seeds", "1.5"}, "--seeds '1.5': must be a whole number"},
     {{"bench", "s.json", "--seeds", "x"}, "--seeds 'x': must be a number"},
     {{"bench", "s.json", "--spp", "-4"}, "--spp: " + whole + "1 and 4294967295"},
-    {{"info", "."}, ".: is a folder; give a scene file in it, .json, .obj or .ply"},
+    {{"info", "."}, ".: is a folder; give a scene file in it, .json, .gltf, .glb, .obj or .ply"},
     {{"compare", "a.png", "a.png", "-t", "0"}, "--threads '0': " + whole + "1 and 4096"},
     render({"--spp"}, "--spp: needs a value, N"),
     render({"-o"}, "--output: needs a value, FILE"),
