@@ -55,7 +55,8 @@ class MaterialReader {
 
  private:
   void read_key(const MaterialKey& key, const JsonNode& node) {
-    if (key.kind == Kind::image_only || (key.parameter && node.type == JsonNode::Type::object))
+    const bool is_map = key.parameter && node.type == JsonNode::Type::object && !is_index(key, node);
+    if (key.kind == Kind::image_only || is_map)
       read_map(key, node);
     else
       read_constant(key, node, quoted(key.name));
@@ -70,10 +71,26 @@ class MaterialReader {
       set_number(key, read_number(node, name, key.range));
   }
 
-  /// A reflectance may be a metal's, by its name.
+  static bool is_reflectance(const MaterialKey& key) {
+    return key.kind == Kind::color && key.range.greatest <= 1;
+  }
+
+  /// Whether a reflectance is given by a complex index.
+  static bool is_index(const MaterialKey& key, const JsonNode& node) {
+    const auto is_part = [](const JsonNode& member) {
+      return std::ranges::find(index_keys(), member.key) != index_keys().end();
+    };
+    return is_reflectance(key) && std::ranges::any_of(node.children, is_part);
+  }
+
+  /// A reflectance may be a metal's, by its name or its index.
   static Vec3d read_color_of(const MaterialKey& key, const JsonNode& node, const std::string& name) {
-    const bool is_reflectance = key.range.greatest <= 1;
-    if (node.type != JsonNode::Type::string || !is_reflectance) return read_color(node, name, key.range);
+    if (is_index(key, node)) {
+      const ObjectReader index(node, name, index_keys());
+      return reflectance_of_index(read_color(index.require("eta"), "\"eta\"", positive),
+                                  read_color(index.require("k"), "\"k\"", not_negative));
+    }
+    if (node.type != JsonNode::Type::string || !is_reflectance(key)) return read_color(node, name, key.range);
     std::vector<std::string_view> names;
     for (const NamedMetal& metal : named_metals()) names.push_back(metal.name);
     return named_metals()[choose(node, "metal", names)].reflectance;
@@ -138,6 +155,11 @@ Material read_material(const JsonNode& node, const std::filesystem::path& file, 
 const std::vector<std::string_view>& map_keys() {
   static const std::vector<std::string_view> keys{"image",   "factor",      "scale", "offset", "clamp",
                                                   "channel", "color_space", "base",  "gain"};
+  return keys;
+}
+
+const std::vector<std::string_view>& index_keys() {
+  static const std::vector<std::string_view> keys{"eta", "k"};
   return keys;
 }
 

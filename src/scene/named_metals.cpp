@@ -2,6 +2,11 @@
 
 namespace castray {
 
+Vec3d reflectance_of_index(const Vec3d& eta, const Vec3d& k) {
+  const Vec3d one(1);
+  return ((eta - one) * (eta - one) + k * k) / ((eta + one) * (eta + one) + k * k);
+}
+
 const std::vector<NamedMetal>& named_metals() {
   static const std::vector<NamedMetal> metals{
       {"silver", {0.989, 0.984, 0.978}}, {"gold", {1.0, 0.728, 0.365}},

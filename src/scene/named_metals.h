@@ -14,6 +14,9 @@ struct NamedMetal {
   Vec3d reflectance;
 };
 
+/// The reflectance straight on, in each channel, of a metal of complex index eta + i k (of air: 1).
+Vec3d reflectance_of_index(const Vec3d& eta, const Vec3d& k);
+
 /// Silver, gold, copper: Johnson and Christy 1972, Physical Review B 6. Iron, chromium: Johnson and Christy
 /// 1974, Physical Review B 9. Aluminium: Cheng and others 2016, ACS Nano 10.
 const std::vector<NamedMetal>& named_metals();

@@ -293,6 +293,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"sky", sky_keys},
         {"gradient", gradient_keys},
         {"map", map_keys()},
+        {"index", index_keys()},
         {"mesh", {"obj", "ply", "gltf", "material", "materials", "transform", "normals", "crease_angle"}},
         {"transform_step", transform_step_keys},
         {"instance", {"object", "transform", "transforms"}},

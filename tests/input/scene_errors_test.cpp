@@ -194,6 +194,16 @@ const std::vector<Case> cases = {
             "s.json:2:61: unknown metal 'aluminum'; did you mean 'aluminium'?"),
     in_line("a grey above 1", R"(  "materials": { "a": { "type": "diffuse", "kd": 1.5 } },)",
             "s.json:2:50: \"kd\" must be at least 0 and at most 1, not 1.5"),
+    in_line("an index without its imaginary part",
+            R"(  "materials": { "a": { "type": "conductor", "reflectance": { "eta": 1 } } },)",
+            "s.json:2:61: \"reflectance\" needs the key 'k'"),
+    in_line("an index below 0",
+            R"(  "materials": { "a": { "type": "conductor", "reflectance": { "eta": 1, "k": -1 } } },)",
+            "s.json:2:78: \"k\" must be at least 0, not -1"),
+    in_line("an index of a lamp",
+            R"(  "materials": { "a": { "type": "diffuse", "ke": { "eta": 1, "k": 2 } } },)",
+            "s.json:2:52: unknown key 'eta' in \"ke\"; known: image, factor, scale, offset, clamp, channel, "
+            "color_space, base, gain"),
     in_line("a metal's name for a lamp", R"(  "materials": { "a": { "type": "diffuse", "ke": "gold" } },)",
             "s.json:2:50: \"ke\" must be an array of 3 numbers, not a string"),
     in_line("kd above 1", R"(  "materials": { "a": { "type": "diffuse", "kd": [1,1.5,1] } },)",
@@ -327,7 +337,9 @@ const std::vector<Case> cases = {
     in_mtl("Kd of two numbers", "newmtl a\nKd 1 1\n", "o.mtl:2:7: 'Kd' needs more numbers"),
     in_mtl("Ke that is not finite", "newmtl a\nKe nan 1 1\n", "o.mtl:2:4: Ke must be finite, not nan"),
     // Files
-    {"another suffix", {{"s.stl", ""}}, "s.stl: not a scene: its name must end in .json, .obj or .ply"},
+    {"another suffix",
+     {{"s.stl", ""}},
+     "s.stl: not a scene: its name must end in .json, .gltf, .glb, .obj or .ply"},
 };
 
 }  // namespace

@@ -197,6 +197,11 @@ TEST_CASE("a number stands for a grey, a metal's name for what it reflects strai
   CHECK(metal("aluminium").y == Approx(0.92).margin(0.01));
   CHECK(metal("iron").y == Approx(0.52).margin(0.02));
   check_near(material(R"("type": "principled", "kd": "gold", "metallic": 1)").materials[0].kd, metal("gold"));
+  // ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2)
+  const std::string index = R"({ "eta": [1, 2, 0.5], "k": [2, 0, 1] })";
+  const Vec3d by_hand(4. / 8, 1. / 9, 1.25 / 3.25);
+  check_near(material(R"("type": "conductor", "reflectance": )" + index).materials[0].reflectance, by_hand);
+  check_near(material(R"("type": "principled", "ks": )" + index).materials[0].ks, by_hand);
 }
 
 TEST_CASE("a light whose image is black everywhere is none") {
