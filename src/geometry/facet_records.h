@@ -35,10 +35,11 @@ struct FacetList {
   ExactFacets exact;  ///< of the whole scene
 };
 
-/// The facets that can lie between two points of the scene, or before light from elsewhere, field by field, padded
-/// to a multiple of 16 with copies of the last one.
+/// The facets that can lie between two points of the scene, or before light from elsewhere, field by field,
+/// padded to a multiple of 16 with copies of the last one.
 struct BlockerList {
   const float* corner[4][3];
+  const float *center[3], *radius;  ///< of a ball around each
   uint32_t count, padded;
 };
 

@@ -192,14 +192,32 @@ BlockerList Facets::blocker_field_list() const {
   BlockerList list{};
   list.count = static_cast<std::uint32_t>(blockers.size());
   list.padded = (list.count + 15) / 16 * 16;
-  const float* field = blocker_fields.data();
+  const float* next = blocker_fields.data();
+  const auto point_to_next = [&](const float*& field) {
+    field = next;
+    next += list.padded;
+  };
   for (auto& corner : list.corner)
-    for (const float*& component : corner) {
-      component = field;
-      field += list.padded;
-    }
+    for (const float*& component : corner) point_to_next(component);
+  for (const float*& component : list.center) point_to_next(component);
+  point_to_next(list.radius);
   return list;
 }
+
+namespace {
+
+/// The middle of a facet's corners, and the radius of a ball around it that holds them.
+std::array<float, 4> ball_around(const Facet& f) {
+  Vec3d middle;
+  for (const auto& c : f.corner) middle += Vec3d(c[0], c[1], c[2]) / 4.0;
+  double radius = 0;
+  for (const auto& c : f.corner) radius = std::max(radius, length(Vec3d(c[0], c[1], c[2]) - middle));
+  constexpr double rounding = 1 + 0x1p-20;
+  return {static_cast<float>(middle.x), static_cast<float>(middle.y), static_cast<float>(middle.z),
+          static_cast<float>(radius * rounding)};
+}
+
+}  // namespace
 
 Facets make_facets(const Scene& scene) {
   Facets result;
@@ -209,10 +227,12 @@ Facets make_facets(const Scene& scene) {
   for (const Facet& f : result.facets)
     if (can_block(f, scene)) result.blockers.push_back(f);
   const std::size_t padded = (result.blockers.size() + 15) / 16 * 16;
-  for (std::size_t field = 0; field < 12; ++field)
+  constexpr std::size_t coordinates = 12, fields = coordinates + 4;
+  for (std::size_t field = 0; field < fields; ++field)
     for (std::size_t i = 0; i < padded; ++i) {
       const Facet& f = result.blockers[std::min(i, result.blockers.size() - 1)];
-      result.blocker_fields.push_back(f.corner[field / 3][field % 3]);
+      result.blocker_fields.push_back(field < coordinates ? f.corner[field / 3][field % 3]
+                                                          : ball_around(f)[field - coordinates]);
     }
   return result;
 }

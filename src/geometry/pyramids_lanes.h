@@ -16,9 +16,6 @@ CASTRAY_INLINE void add_pyramids(const Apex& apex, const Vec (&corner)[corners],
     from_apex[k] = apex.towards(corner[k]);
     local[k] = corner[k] - center;
   }
-  // Bounds of every edge, and of the distances to every corner from points of the box and from the apex.
-  const Float size1 = sum_abs(side1), size2 = sum_abs(side2), size = size1 + size2;
-  const Float from_box = sum_abs(half) + sum_abs(local[0]) + size, distance = sum_abs(from_apex[0]) + size;
   const Float above = dot(normal, from_apex[0]);
   const auto away_from_apex = [above](const Vec& v) {
     return Vec{flip_by_sign(v.x, above), flip_by_sign(v.y, above), flip_by_sign(v.z, above)};
@@ -27,11 +24,15 @@ CASTRAY_INLINE void add_pyramids(const Apex& apex, const Vec (&corner)[corners],
   // box that lies on it.
   const Vec beyond = away_from_apex(normal);
   const Float reach = max_component(half) + max_component(magnitude(local[0]));
+  const Float size1 = sum_abs(side1), size2 = sum_abs(side2), size = size1 + size2;
   const Float base = fma(size1 * size2 * reach, Float(0x1p-21f), dot(beyond, local[0]));
+  Mask meets = lanes & (dot(magnitude(beyond), half) > base);
+  if (none(meets)) return;
+  // Bounds of every edge, and of the distances to every corner from points of the box and from the apex.
+  const Float from_box = sum_abs(half) + sum_abs(local[0]) + size, distance = sum_abs(from_apex[0]) + size;
   const Float error = distance * size * from_box * Float(0x1p-20f);
   Vec edge[corners];
   Float offset[corners];
-  Mask meets = lanes & (dot(magnitude(beyond), half) > base);
   for (int k = 0; k < corners; ++k) {
     const Vec along = corner[(k + 1) % corners] - corner[k];
     edge[k] = away_from_apex(cross(from_apex[k], along));

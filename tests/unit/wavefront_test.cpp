@@ -196,3 +196,7 @@ TEST_CASE("a list of more triangles than a shaft holds gathers what a tree does"
   const Scene scene = box_with_mesh(8, 180, {278, 182, 280});
   CHECK(list_from_tree(scene, 8) < 0.01);
 }
+
+TEST_CASE("a list hides as much of the sky as a tree does") {
+  CHECK(list_from_tree(standard_scene("kinds/sky_and_ground"), 16) < 1e-3);
+}
