@@ -66,6 +66,20 @@ struct SceneObject {
   std::uint32_t first_triangle = 0;
 };
 
+/// A mesh that instances show: triangles first .. first + count - 1 of the scene's. Their positions are in a
+/// space of the mesh's own, every coordinate in [-1,1].
+struct SharedMesh {
+  std::uint32_t first = 0, count = 0;
+};
+
+/// A shared mesh at its place: p of its space is at rows . p + translation in scene space. A mirroring one
+/// keeps the outward side of its triangles outward.
+struct SceneInstance {
+  std::uint32_t mesh = 0;  ///< into Scene::shared_meshes
+  Vec3f rows[3];
+  Vec3f translation;
+};
+
 /// A scene, an immutable value once loaded.
 ///
 /// Geometry lives in *scene space*: the input is parsed in double, moved so that the middle of its bounds is
@@ -95,6 +109,10 @@ struct Scene {
   std::vector<Vec3f> colors;            ///< linear RGB in [0,1], of vertices
   std::vector<Index3> triangle_colors;  ///< per triangle into colors, `no_index` where it has none; or empty
 
+  /// The triangles in front of theirs are in scene space: all lights are among them.
+  std::vector<SharedMesh> shared_meshes;
+  std::vector<SceneInstance> instances;
+
   std::vector<Material> materials;
   std::vector<Texture> textures;
   Vec3d environment{0, 0, 0};  ///< radiance from every direction that hits nothing; an image's mean over them
@@ -106,6 +124,7 @@ struct Scene {
 
   // What happened while loading, for `info` and for messages.
   std::uint64_t dropped_triangles = 0;    ///< degenerate: zero area, NaN, infinite
+  std::uint64_t expanded_instances = 0;   ///< that became meshes of their own
   std::vector<std::string> ignored_keys;  ///< "FILE: key", of MTL files
   std::vector<SceneWarning> warnings;     ///< in the order in which they were met
   bool default_environment = false;       ///< the environment is no file's: nothing in the scene emits
@@ -115,6 +134,16 @@ struct Scene {
   const Material& material_of(std::uint32_t triangle) const { return materials[triangle_material[triangle]]; }
   /// The triangle's object, into objects.
   std::size_t object_of(std::uint32_t triangle) const;
+  /// How many triangles are in scene space, not in a shared mesh's.
+  std::uint32_t own_triangles() const {
+    return shared_meshes.empty() ? static_cast<std::uint32_t>(triangles.size()) : shared_meshes.front().first;
+  }
+  /// How many triangles are shown: those in scene space, and each instance's.
+  std::uint64_t shown_triangles() const;
+  /// A box around everything, in scene space: its lower and its upper corner. Around instances it may be
+  /// loose.
+  std::array<Vec3d, 2> bounds() const;
+
   Vec3d to_world(const Vec3d& p) const { return center + p * unit; }
   Vec3d to_scene(const Vec3d& p) const { return (p - center) / unit; }
   Camera to_world(const Camera& camera) const;

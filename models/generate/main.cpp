@@ -3,12 +3,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <ostream>
 
 #include "cli/tool_main.h"
 #include "core/files.h"
+#include "generate/forest.h"
 #include "generate/leaves.h"
 
 namespace castray {
@@ -100,12 +103,78 @@ void write_scene(const std::string& shape, const fs::path& obj, const fs::path& 
   write_file(file, text);
 }
 
+constexpr std::uint32_t kinds_of_trees = 3;
+
+/// Where the trees of one kind are, a matrix a line.
+void write_places(const std::vector<TreePlace>& places, std::uint32_t kind, const fs::path& file) {
+  write_file(file, [&](std::ostream& out) {
+    for (std::size_t i = kind; i < places.size(); i += kinds_of_trees) {
+      const TreePlace& tree = places[i];
+      const double c = tree.size * std::cos(tree.turn), s = tree.size * std::sin(tree.turn);
+      out << fmt::format("{:.6f} 0 {:.6f} {:.4f} 0 {:.6f} 0 {:.4f} {:.6f} 0 {:.6f} {:.4f}\n", c, s,
+                         tree.foot.x, tree.size, tree.foot.y, -s, c, tree.foot.z);
+    }
+  });
+}
+
+/// A forest that shows about so many triangles: FILE.json, and beside it the ground, a few trees and where
+/// they stand.
+std::string write_forest(std::uint32_t triangles, std::uint32_t seed, const fs::path& file) {
+  if (file.extension() != ".json") throw InputError({file.string()}, "a forest must end in .json");
+  constexpr std::uint32_t most_of_a_tree = 100000, fewest_of_a_tree = 5000;
+  const std::uint32_t of_a_tree = std::clamp(triangles / 1000, fewest_of_a_tree, most_of_a_tree);
+  const std::uint32_t trees = std::max(triangles / of_a_tree, kinds_of_trees);
+  const std::string stem = file.stem().string();
+  const auto beside = [&](const std::string& end) { return fs::path(file).replace_filename(stem + end); };
+  std::string objects, instances;
+  const std::vector<TreePlace> places = make_places(trees, seed);
+  for (std::uint32_t kind = 0; kind < kinds_of_trees; ++kind) {
+    const Tree tree = make_tree(of_a_tree, seed + kind);
+    const std::string name = fmt::format("_tree{}", kind),
+                      separator = kind + 1 < kinds_of_trees ? ",\n" : "\n";
+    write_obj(tree.wood, false, "wood", beside(name + "_wood.obj"));
+    write_obj(tree.leaves, false, "leaves", beside(name + "_leaves.obj"));
+    write_places(places, kind, beside(name + ".txt"));
+    objects += fmt::format(
+        "    \"tree{0}\": [ {{ \"obj\": \"{1}_wood.obj\", \"material\": \"bark\" }},\n"
+        "               {{ \"obj\": \"{1}_leaves.obj\", \"material\": \"leaf{0}\" }} ]{2}",
+        kind, stem + name, separator);
+    instances += fmt::format("    {{ \"object\": \"tree{0}\", \"transforms\": \"{1}.txt\" }}{2}", kind,
+                             stem + name, separator);
+  }
+  write_obj(make_ground(trees), false, "ground", beside("_ground.obj"));
+  const double reach = 2.5 * std::sqrt(static_cast<double>(trees));
+  write_file(file, fmt::format(R"(// A forest of {} trees of {} triangles. Made by castray-generate.
+{{
+  "camera": {{ "position": [0, 16, {}], "look_at": [0, 5, 0], "up": [0, 1, 0], "fov": 40 }},
+  "image": {{ "width": 960, "height": 540 }},
+  "render": {{ "spp": 64 }},
+  "environment": {{ "sky": {{ "sun_elevation": 35, "sun_azimuth": 110 }} }},
+  "materials": {{
+    "ground": {{ "type": "diffuse", "kd": [0.16, 0.13, 0.07] }},
+    "bark": {{ "type": "diffuse", "kd": [0.22, 0.16, 0.11] }},
+    "leaf0": {{ "type": "diffuse", "kd": [0.13, 0.28, 0.05] }},
+    "leaf1": {{ "type": "diffuse", "kd": [0.25, 0.33, 0.06] }},
+    "leaf2": {{ "type": "diffuse", "kd": [0.4, 0.24, 0.05] }}
+  }},
+  "meshes": [ {{ "obj": "{}_ground.obj", "material": "ground" }} ],
+  "objects": {{
+{}  }},
+  "instances": [
+{}  ]
+}}
+)",
+                               trees, of_a_tree, reach + 14, stem, objects, instances));
+  return fmt::format("forest, {} trees of {} triangles, seed {}", trees, of_a_tree, seed);
+}
+
 int run(int argc, char** argv) {
   std::string shape, file;
   std::uint32_t triangles = 0, seed = 1;
   CLI::App app{"Writes a mesh made by rule.", "castray-generate"};
-  app.add_option("shape", shape,
-                 "icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves or cut_leaves")
+  app.add_option(
+         "shape", shape,
+         "icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves, cut_leaves or forest")
       ->required();
   app.add_option("-n,--triangles", triangles, "how many, about (terrain, hair, soup, sticks: exactly)")
       ->required();
@@ -116,6 +185,10 @@ int run(int argc, char** argv) {
       ->required();
   return tool_main(app, argc, argv, [&] {
     const fs::path target = file;
+    if (shape == "forest") {
+      fmt::print("{}: {}\n", file, write_forest(triangles, seed, target));
+      return 0;
+    }
     const fs::path obj = fs::path(target).replace_extension(".obj");
     const Shape made = make_shape(shape, triangles, seed);
     const std::string title = fmt::format("{}, {} triangles, seed {}", shape, made.triangles.size(), seed);

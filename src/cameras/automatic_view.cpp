@@ -115,16 +115,11 @@ Sight look(const Camera& camera, const Scene& scene, const std::vector<SurfacePo
 
 Camera automatic_camera(const Scene& scene) {
   constexpr int surface_points = 1 << 16, light_points = 16;
-  const auto points = sample_surface(scene, scene.triangles.size(), surface_points,
+  const auto points = sample_surface(scene, scene.own_triangles(), surface_points,
                                      [](std::size_t i) { return static_cast<std::uint32_t>(i); });
   const auto lights = sample_surface(scene, scene.lights.size(), light_points,
                                      [&](std::size_t i) { return scene.lights[i]; });
-  Vec3d low(scene.positions.front()), high = low;
-  for (const Vec3f& p : scene.positions)
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], static_cast<double>(p[i]));
-      high[i] = std::max(high[i], static_cast<double>(p[i]));
-    }
+  const auto [low, high] = scene.bounds();
   const Vec3d middle = (low + high) * 0.5;
   std::vector<Vec3d> corners;
   for (int i = 0; i < 8; ++i)

@@ -71,18 +71,18 @@ std::string describe(const Material& material, const Scene& scene) {
 }
 
 void print_bounds(const Scene& scene) {
-  Vec3f low = scene.positions.front(), high = low;
-  for (const Vec3f& p : scene.positions)
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  const auto corner = [&](const Vec3f& p) { return world_point(scene, Vec3d(p), ", "); };
+  const auto [low, high] = scene.bounds();
+  const auto corner = [&](const Vec3d& p) { return world_point(scene, p, ", "); };
   fmt::print("bounds     ({}) .. ({})\n", corner(low), corner(high));
 }
 
 void print_geometry(const Scene& scene) {
   fmt::print("triangles  {}\n", scene.triangles.size());
+  if (!scene.instances.empty())
+    fmt::print("instances  {} of {} objects: {} triangles are shown\n", scene.instances.size(),
+               scene.shared_meshes.size(), scene.shown_triangles());
+  if (scene.expanded_instances > 0)
+    fmt::print("expanded   {} instances became meshes of their own\n", scene.expanded_instances);
   fmt::print("vertices   {}\n", scene.positions.size());
   if (scene.dropped_triangles > 0)
     fmt::print("dropped    {} degenerate triangles (no area, or coordinates that are not finite)\n",

@@ -85,6 +85,9 @@ void RenderReport::print_scene(bool verbose) const {
   fmt::print(stderr, "castray: {}: {} triangles, {} of them lights, {} materials; read in {:.3f} s\n",
              scene.file.string(), scene.triangles.size(), scene.lights.size(), scene.materials.size(),
              load_seconds);
+  if (!scene.instances.empty() || scene.expanded_instances > 0)
+    fmt::print(stderr, "castray: {} instances of {} objects show {} triangles; {} became meshes of their own\n",
+               scene.instances.size(), scene.shared_meshes.size(), scene.shown_triangles(), scene.expanded_instances);
   for (const std::string& key : scene.ignored_keys) fmt::print(stderr, "castray: ignored: {}\n", key);
 }
 
@@ -173,6 +176,8 @@ std::string RenderReport::json() const {
                                    {"skipped", s.skipped},
                                    {"accel", s.accel_summary},
                                    {"triangles", scene.triangles.size()},
+                                   {"instances", scene.instances.size()},
+                                   {"shown_triangles", scene.shown_triangles()},
                                    {"lights", scene.lights.size()},
                                    {"load_seconds", load_seconds},
                                    {"bvh_seconds", s.bvh_seconds},

@@ -85,7 +85,9 @@ enum KernelFeature : uint32_t {
   feature_bvh = 1,        ///< a tree instead of a flat list
   feature_materials = 2,  ///< other than diffuse
   feature_detail = 4,     ///< textures and smooth normals
+  feature_instances = 8,  ///< a tree over instances of objects, which have trees of their own
 };
+inline constexpr uint32_t kernel_feature_sets = 16;
 
 /// Up to so many triangles a flat list is faster than a tree.
 inline constexpr uint32_t longest_list = 64;

@@ -53,9 +53,15 @@ void for_chunks(std::uint32_t begin, std::uint32_t end, const Body& body) {
 class Builder {
  public:
   Builder(const MeshView& mesh, const BuildParameters& parameters) : mesh_(mesh), parameters_(parameters) {
-    if (parameters.split_share > 0) split_refs_ = presplit(mesh, parameters.split_share, parameters.threads);
-    count_ = split_refs_.empty() ? mesh.count : static_cast<std::uint32_t>(split_refs_.size());
-    for (auto& refs : refs_) refs = std::make_unique_for_overwrite<PrimRef[]>(count_);
+    if (parameters.split_share > 0) given_refs_ = presplit(mesh, parameters.split_share, parameters.threads);
+    count_ = given_refs_.empty() ? mesh.count : static_cast<std::uint32_t>(given_refs_.size());
+    make_room();
+  }
+  Builder(std::vector<PrimRef>&& refs, const BuildParameters& parameters)
+      : parameters_(parameters),
+        given_refs_(std::move(refs)),
+        count_(static_cast<std::uint32_t>(given_refs_.size())) {
+    make_room();
   }
 
   BinaryTree build() {
@@ -80,18 +86,22 @@ class Builder {
   }
 
  private:
+  void make_room() {
+    for (auto& refs : refs_) refs = std::make_unique_for_overwrite<PrimRef[]>(count_);
+  }
+
   Range make_refs() {
     const std::uint32_t n = count_;
     std::vector<Bounds> chunk_box((n + chunk_size - 1) / chunk_size);
     for_chunks(0, n, [&](std::uint32_t c, std::uint32_t first, std::uint32_t last) {
       Bounds all;
       for (std::uint32_t i = first; i < last; ++i) {
-        refs_[0][i] = split_refs_.empty() ? PrimRef(triangle_bounds(mesh_, i), i) : split_refs_[i];
+        refs_[0][i] = given_refs_.empty() ? PrimRef(triangle_bounds(mesh_, i), i) : given_refs_[i];
         all.add(refs_[0][i].lower, refs_[0][i].upper);
       }
       chunk_box[c] = all;
     });
-    split_refs_ = {};
+    given_refs_ = {};
     Range range{0, n, 0, 0, {}};
     for (const Bounds& box : chunk_box) range.box.add(box);
     return range;
@@ -276,7 +286,7 @@ class Builder {
 
   MeshView mesh_;
   BuildParameters parameters_;
-  std::vector<PrimRef> split_refs_;
+  std::vector<PrimRef> given_refs_;  ///< or empty: the mesh's
   std::uint32_t count_;
   std::unique_ptr<PrimRef[]> refs_[2];
   std::uint32_t* primitives_ = nullptr;
@@ -287,6 +297,10 @@ class Builder {
 BinaryTree build_binary_tree(const MeshView& mesh, const BuildParameters& parameters) {
   if (mesh.count == 0) return {};
   return Builder(mesh, parameters).build();
+}
+
+BinaryTree build_binary_tree(std::vector<PrimRef> primitives, const BuildParameters& parameters) {
+  return Builder(std::move(primitives), parameters).build();
 }
 
 }  // namespace castray

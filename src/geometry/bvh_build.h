@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "geometry/binning.h"
 #include "geometry/bvh_node.h"
 #include "geometry/ray.h"
 
@@ -19,5 +22,8 @@ struct BuildParameters {
 /// Binned surface area heuristic: Wald (2007), "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies". The tree does not depend on the number of threads.
 BinaryTree build_binary_tree(const MeshView& mesh, const BuildParameters& parameters);
+
+/// Over any primitives, at least one.
+BinaryTree build_binary_tree(std::vector<PrimRef> primitives, const BuildParameters& parameters);
 
 }  // namespace castray

@@ -92,21 +92,67 @@ class Treelet {
   const BvhNode* child_[bvh_width];
 };
 
-std::uint32_t packets_of(const BvhNode& leaf) { return (leaf.count + packet_size - 1) / packet_size; }
-
 constexpr std::uint32_t node_blocks = sizeof(WideNode) / block_bytes;
 constexpr std::uint32_t packet_blocks = sizeof(TrianglePacket) / block_bytes;
 
+/// Leaves as packets of triangles, behind the nodes above them.
+class PacketLeaves {
+ public:
+  PacketLeaves(const BinaryTree& tree, const MeshView& mesh) : tree_(tree), mesh_(mesh) {}
+
+  /// How many blocks a leaf fills.
+  static std::uint32_t blocks(const BvhNode& leaf) { return packets(leaf) * packet_blocks; }
+
+  /// The leaf as a child, with its blocks number `block` and on, at `out`.
+  std::uint32_t write(const BvhNode& leaf, std::uint32_t block, char* out) const {
+    auto* const packet = reinterpret_cast<TrianglePacket*>(out);
+    for (std::uint32_t i = 0; i < packets(leaf) * packet_size; ++i)
+      write_lane(leaf, i, packet[i / packet_size], i % packet_size);
+    return block * child_unit + leaf_flag + packets(leaf) - 1;
+  }
+
+ private:
+  static std::uint32_t packets(const BvhNode& leaf) { return (leaf.count + packet_size - 1) / packet_size; }
+
+  void write_lane(const BvhNode& leaf, std::uint32_t i, TrianglePacket& out, std::uint32_t lane) const {
+    const bool used = i < leaf.count;
+    const std::uint32_t triangle = tree_.primitives[leaf.first + (used ? i : 0)];
+    out.triangle[lane] = triangle;
+    for (std::uint32_t v = 0; v < 3; ++v) {
+      const std::uint32_t corner = used ? v : v % 2;
+      const Vec3f& p = mesh_.positions[mesh_.triangles[triangle][corner]];
+      for (int axis = 0; axis < 3; ++axis) out.vertex[v][axis][lane] = p[axis];
+    }
+  }
+
+  const BinaryTree& tree_;
+  const MeshView& mesh_;
+};
+
+/// Leaves as the number of their only primitive.
+class SingleLeaves {
+ public:
+  explicit SingleLeaves(const BinaryTree& tree) : tree_(tree) {}
+
+  static std::uint32_t blocks(const BvhNode&) { return 0; }
+  std::uint32_t write(const BvhNode& leaf, std::uint32_t, char*) const {
+    return tree_.primitives[leaf.first] * child_unit + leaf_flag;
+  }
+
+ private:
+  const BinaryTree& tree_;
+};
+
 /// How much a subtree fills.
 struct Extent {
-  std::uint64_t nodes = 0, packets = 0;
+  std::uint64_t nodes = 0, leaf_blocks = 0;
   int depth = 0;
 
-  std::uint64_t blocks() const { return nodes * node_blocks + packets * packet_blocks; }
+  std::uint64_t blocks() const { return nodes * node_blocks + leaf_blocks; }
 
   void add(const Extent& child, int levels) {
     nodes += child.nodes;
-    packets += child.packets;
+    leaf_blocks += child.leaf_blocks;
     depth = std::max(depth, child.depth + levels);
   }
 };
@@ -119,9 +165,10 @@ struct Job {
   Extent extent;
 };
 
+template <class Leaves>
 class Collapser {
  public:
-  Collapser(const BinaryTree& tree, const MeshView& mesh) : tree_(tree), mesh_(mesh) {}
+  Collapser(const BinaryTree& tree, const Leaves& leaves) : tree_(tree), leaves_(leaves) {}
 
   WideTree run(int threads) {
     Extent total = measure(tree_.root, 0, &jobs_);
@@ -136,8 +183,8 @@ class Collapser {
     if (total.blocks() > max_blocks)
       throw std::length_error("the scene has too many triangles for one hierarchy");
 
-    WideTree wide{BlockArray(total.blocks() * block_bytes), static_cast<std::uint32_t>(total.nodes), 0,
-                  total.depth};
+    WideTree wide{BlockArray(std::max<std::size_t>(total.blocks(), 1) * block_bytes),
+                  static_cast<std::uint32_t>(total.nodes), 0, total.depth};
     blocks_ = wide.blocks.data();
     std::uint32_t block = 0;
     Job* next = jobs_.data();
@@ -156,7 +203,7 @@ class Collapser {
 
   /// With `jobs`, leaves out the subtrees `top_levels` down, and lists them.
   Extent measure(const BvhNode& node, int level, std::vector<Job>* jobs) const {
-    if (node.is_leaf()) return {0, packets_of(node), 0};
+    if (node.is_leaf()) return {0, Leaves::blocks(node), 0};
     if (jobs && level == top_levels) {
       jobs->push_back({&node, nullptr, 0, {}});
       return {};
@@ -198,26 +245,13 @@ class Collapser {
   }
 
   std::uint32_t make_leaf(const BvhNode& leaf, std::uint32_t& block) {
-    const std::uint32_t child = block * child_unit + leaf_flag + packets_of(leaf) - 1;
-    auto* const packets = reinterpret_cast<TrianglePacket*>(blocks_ + std::size_t{block} * block_bytes);
-    block += packets_of(leaf) * packet_blocks;
-    for (std::uint32_t i = 0; i < packets_of(leaf) * packet_size; ++i) {
-      TrianglePacket& out = packets[i / packet_size];
-      const std::uint32_t lane = i % packet_size;
-      const bool used = i < leaf.count;
-      const std::uint32_t triangle = tree_.primitives[leaf.first + (used ? i : 0)];
-      out.triangle[lane] = triangle;
-      for (std::uint32_t v = 0; v < 3; ++v) {
-        const std::uint32_t corner = used ? v : v % 2;
-        const Vec3f& p = mesh_.positions[mesh_.triangles[triangle][corner]];
-        for (int axis = 0; axis < 3; ++axis) out.vertex[v][axis][lane] = p[axis];
-      }
-    }
-    return child;
+    const std::uint32_t first = block;
+    block += Leaves::blocks(leaf);
+    return leaves_.write(leaf, first, blocks_ + std::size_t{first} * block_bytes);
   }
 
   const BinaryTree& tree_;
-  const MeshView& mesh_;
+  const Leaves& leaves_;
   char* blocks_ = nullptr;
   std::vector<Job> jobs_;
 };
@@ -225,7 +259,11 @@ class Collapser {
 }  // namespace
 
 WideTree collapse(const BinaryTree& tree, const MeshView& mesh, int threads) {
-  return Collapser(tree, mesh).run(threads);
+  return Collapser(tree, PacketLeaves(tree, mesh)).run(threads);
+}
+
+WideTree collapse_singles(const BinaryTree& tree, int threads) {
+  return Collapser(tree, SingleLeaves(tree)).run(threads);
 }
 
 }  // namespace castray

@@ -18,4 +18,8 @@ struct WideTree {
 /// packets out of its leaves. Leaves must hold at most packet_size * max_leaf_packets triangles.
 WideTree collapse(const BinaryTree& tree, const MeshView& mesh, int threads);
 
+/// The same without packets, of a tree with one primitive in each leaf: a leaf is child_unit times its
+/// number, plus leaf_flag.
+WideTree collapse_singles(const BinaryTree& tree, int threads);
+
 }  // namespace castray

@@ -3,6 +3,7 @@
 #include <stdint.h>
 
 #include "geometry/facet_records.h"
+#include "geometry/instance_records.h"
 #include "geometry/wide_bvh_view.h"
 
 // A scene's geometry as kernels read it: plain data, the same for every instruction set.
@@ -41,15 +42,16 @@ struct PartialTriangles {
 
 /// All of a scene as a tree of triangles.
 struct TriangleTree {
-  WideBvhView bvh;
+  WideBvhView bvh;  ///< without meaning where the scene is held as an InstanceTree
   TriangleTable triangles;
   PartialTriangles partial;
 };
 
-/// A scene is held as one of the two.
+/// A scene is held as one of the three; the last shares the tables of the second.
 struct SceneGeometry {
   FlatList list;
   TriangleTree tree;
+  InstanceTree instances;
 };
 
 }  // namespace castray

@@ -3,6 +3,7 @@
 #include "geometry/facet_shaft_lanes.h"
 #include "geometry/facets_lanes.h"
 #include "geometry/geometry_records.h"
+#include "geometry/placement_lanes.h"
 #include "geometry/surface_point_lanes.h"
 
 namespace castray::CASTRAY_ISA {
@@ -26,6 +27,9 @@ class ListGeometry {
   CASTRAY_INLINE void occluded(const ShadowBatch& rays) const {
     facets_occluded(list_.blockers, segment_slack, rays);
   }
+
+  /// How what tables hold of a hit's triangle is turned to scene space.
+  CASTRAY_INLINE InPlace placement(const SurfaceHit& /*hit*/) const { return {}; }
 
   /// The surface point where ray o + t d hits.
   CASTRAY_INLINE SurfacePoint surface_point(const Vec& o, const Vec& d, const SurfaceHit& hit) const {

@@ -22,6 +22,7 @@ struct Hit {
   T t = std::numeric_limits<T>::infinity();
   std::uint32_t triangle = Scene::no_index;
   T b1 = 0, b2 = 0;
+  std::uint32_t instance = Scene::no_index;  ///< of a scene with instances; see InstanceTree
 
   bool found() const { return triangle != Scene::no_index; }
 };
@@ -37,8 +38,13 @@ struct MeshView {
   std::uint32_t count = 0;
 };
 
+/// The triangles in scene space.
 inline MeshView mesh_of(const Scene& scene) {
-  return {scene.positions.data(), scene.triangles.data(), static_cast<std::uint32_t>(scene.triangles.size())};
+  return {scene.positions.data(), scene.triangles.data(), scene.own_triangles()};
+}
+/// The triangles of a shared mesh, in its space.
+inline MeshView mesh_of(const Scene& scene, const SharedMesh& mesh) {
+  return {scene.positions.data(), scene.triangles.data() + mesh.first, mesh.count};
 }
 
 }  // namespace castray

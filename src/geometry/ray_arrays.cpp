@@ -12,9 +12,10 @@ void RayArrays::closest(const std::function<void(const RayBatch&)>& trace, std::
     const auto n = static_cast<std::uint32_t>(std::min(batch_of_rays, count - done));
     const auto in = [&](int i) { return number_[i].data() + first + done; };
     float t[batch_of_rays], b1[batch_of_rays], b2[batch_of_rays];
-    std::uint32_t triangle[batch_of_rays];
-    trace({in(0), in(1), in(2), in(3), in(4), in(5), in(6), t, triangle, b1, b2, n});
-    for (std::uint32_t i = 0; i < n; ++i) hits[done + i] = {t[i], triangle[i], b1[i], b2[i]};
+    std::uint32_t triangle[batch_of_rays], instance[batch_of_rays];
+    std::fill_n(instance, n, Scene::no_index);
+    trace({in(0), in(1), in(2), in(3), in(4), in(5), in(6), t, triangle, b1, b2, n, instance});
+    for (std::uint32_t i = 0; i < n; ++i) hits[done + i] = {t[i], triangle[i], b1[i], b2[i], instance[i]};
   }
 }
 

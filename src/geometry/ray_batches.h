@@ -15,6 +15,7 @@ struct RayBatch {
   uint32_t* triangle;  ///< `no_hit` if there is none; of equally near ones the lowest
   float *b1, *b2;      ///< a triangle's hit is at (1-b1-b2) v0 + b1 v1 + b2 v2; 0 for a facet
   uint32_t count;
+  uint32_t* instance = nullptr;  ///< of an InstanceTree; others do not write it
 };
 
 /// Rays of which only whether they hit anything is asked.

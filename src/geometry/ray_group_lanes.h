@@ -24,9 +24,22 @@ struct RayGroup {
 /// Bytes from a node's near plane on axis i to its far plane, by exclusive or.
 constexpr uint32_t far_plane_flip[3] = {0x60, 0xa0, 0xe0};
 
+/// What a tree's boxes are to be grown by for rounding that SlabTest does not know of, over the distance to
+/// the farthest plane.
+struct NoSlack {
+  CASTRAY_INLINE Float operator()(Float grow, const Float (&)[3]) const { return grow; }
+};
+struct Slack {
+  float share;
+  CASTRAY_INLINE Float operator()(Float grow, const Float (&reach)[3]) const {
+    return grow + max(reach[0], max(reach[1], reach[2])) * Float(share);
+  }
+};
+
 /// Fills lanes [first, first + width) of the group: what SlabTest and TriangleTest do when made.
+template <class AnySlack = NoSlack>
 CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& bvh, const Float (&o)[3],
-                            const Float (&d)[3], Float t_max) {
+                            const Float (&d)[3], Float t_max, const AnySlack& slack = {}) {
   constexpr float half_ulp = 0x1p-24f;
   const Float size = max(abs(d[0]), max(abs(d[1]), abs(d[2])));
   const Float place = max(abs(o[0]), max(abs(o[1]), abs(o[2])));
@@ -64,9 +77,11 @@ CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& 
     // A component this small moves the ray by less than the boxes have grown: a finite reciprocal will do.
     const Float inverse = Float(1.0f) / copy_sign(max(abs(d[i]), size * Float(0x1p-32f)), d[i]);
     // As SlabTest, but 2 gamma(3) of the distance to the farthest plane instead of to each: one reciprocal.
-    const Float grow = copy_sign(Float(9 * half_ulp) * reach[i] + Float(4 * half_ulp) * abs(o[i]) +
-                                     Float(17 * half_ulp) * max(abs(d[i]), size * Float(0x1p-8f)) * reach_t,
-                                 d[i]);
+    const Float grow =
+        copy_sign(slack(Float(9 * half_ulp) * reach[i] + Float(4 * half_ulp) * abs(o[i]) +
+                            Float(17 * half_ulp) * max(abs(d[i]), size * Float(0x1p-8f)) * reach_t,
+                        reach),
+                  d[i]);
     store(group.inverse[i] + first, inverse);
     store(group.near_offset[i] + first, (o[i] + grow) * inverse);
     store(group.far_offset[i] + first, (o[i] - grow) * inverse);

@@ -7,7 +7,7 @@ namespace castray::CASTRAY_ISA {
 /// A closest hit: ray parameter, facet or triangle, and barycentrics of a triangle.
 struct SurfaceHit {
   Float t, b1, b2;
-  Uint primitive;
+  Uint primitive, instance;  ///< the latter has no meaning without an InstanceTree
 };
 
 /// A point on a surface. `normal` is geometric, to the counter-clockwise side. `error` bounds the

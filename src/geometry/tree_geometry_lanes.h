@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/bvh_shaft_lanes.h"
+#include "geometry/placement_lanes.h"
 #include "geometry/triangle_table_lanes.h"
 #include "geometry/wide_bvh_lanes.h"
 
@@ -22,6 +23,8 @@ class TreeGeometry {
   CASTRAY_INLINE void occluded(const ShadowBatch& rays) const {
     has_partial() ? bvh_occluded(tree_.bvh, there_, rays) : bvh_occluded(tree_.bvh, rays);
   }
+
+  CASTRAY_INLINE InPlace placement(const SurfaceHit& /*hit*/) const { return {}; }
 
   CASTRAY_INLINE SurfacePoint surface_point(const Vec& /*o*/, const Vec& /*d*/, const SurfaceHit& hit) const {
     return triangle_point(tree_.triangles, hit);

@@ -50,7 +50,7 @@ bool share_a_corner(const Corners& triangle, const Facet& light) {
 }  // namespace
 
 bool may_be_covered(const Scene& scene, const std::vector<Facet>& lights) {
-  if (lights.size() > most_pairs / scene.triangles.size()) return true;
+  if (!scene.instances.empty() || lights.size() > most_pairs / scene.triangles.size()) return true;
   return std::ranges::any_of(lights, [&](const Facet& light) {
     const bool two_sided = scene.materials[light.material].two_sided_emission;
     return std::ranges::any_of(scene.triangles, [&](const Index3& t) {

@@ -61,6 +61,7 @@ bool shines_within(const Scene& scene, std::uint32_t light, double squared_dista
 /// density of a diffuse surface's directions is at most 1 / (pi d^2).
 bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
   if (scene.lights.empty()) return false;
+  if (!scene.instances.empty()) return true;
   if (scene.lights.size() > most_pairs / scene.triangles.size() || !all_diffuse(scene)) return true;
   const std::vector<Vec3d> emission = mean_emissions(scene);
   double power = 0;

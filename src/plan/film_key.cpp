@@ -99,6 +99,12 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add(scene.triangle_uvs);
   hash.add(scene.colors);
   hash.add(scene.triangle_colors);
+  for (const SceneInstance& instance : scene.instances) {
+    const SharedMesh& mesh = scene.shared_meshes[instance.mesh];
+    hash.add(mesh.first), hash.add(mesh.count);
+    for (const Vec3f& row : instance.rows) hash.add(Vec3d(row));
+    hash.add(Vec3d(instance.translation));
+  }
   for (const Material& m : scene.materials) {
     hash.add(m.type);
     for (const MaterialKey& key : descriptor_of(m.type).keys) {

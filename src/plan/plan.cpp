@@ -20,16 +20,18 @@ namespace {
 constexpr std::size_t few_light_triangles = 8;
 
 bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
-  if (needs.textures || needs.smooth_normals || needs.coverage) return false;  // facets have no barycentrics
+  if (needs.instances > 0 || needs.textures || needs.smooth_normals || needs.coverage)
+    return false;  // facets have no barycentrics
   return options.accel == AccelKind::list ||
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
 }
 
 /// Paths from lights that are like those from the camera: where surfaces have holes they would need worlds of
-/// their own, and shading normals depend on the side that they are seen from.
+/// their own, and shading normals depend on the side that they are seen from. There is no kernel of them for
+/// instances.
 bool may_have_light_paths(const SceneNeeds& needs) {
-  return needs.specular && needs.lights > 0 && !needs.coverage && !needs.smooth_normals &&
-         !needs.bent_normals;
+  return needs.specular && needs.lights > 0 && needs.instances == 0 && !needs.coverage &&
+         !needs.smooth_normals && !needs.bent_normals;
 }
 
 /// The end of a shared suffix on a glossy surface keeps no direction to a light without size.
@@ -39,13 +41,15 @@ bool may_share(const SceneNeeds& needs) { return needs.delta_lights == 0 || !nee
 BuildQuality build_quality(const Scene& scene, const RenderOptions& options, const Window& window) {
   constexpr double usual_rays_of_a_pixel = 16 * 4;
   if (options.build == BuildQuality::fast) return BuildQuality::fast;
+  if (!scene.instances.empty())
+    return options.build == BuildQuality::best ? BuildQuality::best : BuildQuality::fast;
   const double pixels = static_cast<double>(window.full_width) * window.full_height;
   const MeshView mesh = mesh_of(scene);
   return choose_build(options.build, wasted_boxes(mesh), mesh.count, usual_rays_of_a_pixel * pixels);
 }
 
 std::string kernel_name(const Plan& plan) {
-  std::string name = plan.list ? "list" : "BVH";
+  std::string name = plan.list ? "list" : plan.features & feature_instances ? "BVH of instances" : "BVH";
   name += plan.features & feature_detail      ? ", all materials, textures, smooth normals"
           : plan.features & feature_materials ? ", all materials"
                                               : ", diffuse";
@@ -68,10 +72,11 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   const SceneNeeds needs = needs_of(scene);
   Plan plan;
   plan.list = use_list(needs, options);
-  const bool detail = needs.textures || needs.smooth_normals || (options.generic && !plan.list);
+  const bool instances = needs.instances > 0;
+  const bool detail = instances || needs.textures || needs.smooth_normals || (options.generic && !plan.list);
   const bool materials = detail || options.generic || needs.types != std::set{MaterialType::diffuse};
-  plan.features =
-      (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) | (detail ? feature_detail : 0u);
+  plan.features = (plan.list ? 0u : feature_bvh) | (materials ? feature_materials : 0u) |
+                  (detail ? feature_detail : 0u) | (instances ? feature_instances : 0u);
   plan.choose_lights_by_importance = options.lights != LightSampling::area;
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
@@ -84,7 +89,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
     throw InputError(
         "--caustics on: paths from lights need a lamp, a smooth mirror or glass, and no coverage, smooth "
         "normals, "
-        "normal maps or bump maps; leave it at auto");
+        "normal maps, bump maps or instances; leave it at auto");
   plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options, window);
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, std::string_view what) {
@@ -92,6 +97,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   };
   skip(!plan.list, "tree");
   skip(plan.list || plan.build == BuildQuality::best, "cut boxes");
+  skip(needs.instances > 0, "instances");
   skip(detail || needs.textures, "textures");
   skip(detail || needs.smooth_normals, "smooth normals");
   skip(needs.coverage, "coverage");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "castray/error.h"
 #include "core/contract.h"
 #include "geometry/bvh.h"
 #include "geometry/flat_slab_list.h"
@@ -90,6 +91,10 @@ std::unique_ptr<const PreparedIntegrator> prepare(std::shared_ptr<const Scene> s
 }  // namespace
 
 std::unique_ptr<const PreparedIntegrator> prepare_reference(const Scene& scene, const Job& job) {
+  if (!scene.instances.empty())
+    throw InputError(
+        scene.file.string() +
+        ": the reference integrator knows no instances; add \"instancing\": \"expand\" to the scene");
   const bool classic = job.options.epsilon && (scene.unit != 1 || scene.center != Vec3d());
   const auto traced = classic ? std::make_shared<const Scene>(in_file_coordinates(scene))
                               : std::shared_ptr<const Scene>(std::shared_ptr<void>(), &scene);

@@ -7,6 +7,7 @@ namespace castray {
 SceneNeeds needs_of(const Scene& scene) {
   SceneNeeds needs;
   needs.triangles = scene.triangles.size();
+  needs.instances = scene.instances.size();
   needs.lights = scene.lights.size();
   needs.smooth_normals = !scene.triangle_normals.empty();
   needs.delta_lights = scene.delta_lights.size();

@@ -10,6 +10,7 @@ namespace castray {
 /// The census of a scene: which features it really uses, by the triangles that are there.
 struct SceneNeeds {
   std::size_t triangles = 0, lights = 0;  ///< lights: emitting triangles
+  std::size_t instances = 0;              ///< that share the triangles of their object
   bool textures = false, smooth_normals = false;
   std::set<MaterialType> types;  ///< of materials
   bool specular = false;         ///< a perfectly smooth mirror or glass

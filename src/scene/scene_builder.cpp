@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <utility>
 
 #include "castray/error.h"
 #include "castray/image.h"
@@ -43,6 +45,52 @@ void keep_objects(std::vector<SceneObject>& objects, const std::vector<bool>& ke
     object.first_triangle = kept;
   }
 }
+
+void keep_marked(Mesh& mesh, const std::vector<bool>& keep) {
+  if (std::ranges::find(keep, false) == keep.end()) return;
+  keep_objects(mesh.objects, keep);
+  keep_marked(mesh.triangles, keep);
+  keep_marked(mesh.triangle_material, keep);
+  keep_marked(mesh.triangle_normals, keep);
+  keep_marked(mesh.triangle_uvs, keep);
+  keep_marked(mesh.triangle_colors, keep);
+}
+
+template <class T, class Predicate>
+std::vector<bool> marked(const std::vector<T>& values, const Predicate& is_marked) {
+  std::vector<bool> marks(values.size());
+  std::transform(values.begin(), values.end(), marks.begin(), is_marked);
+  return marks;
+}
+
+struct Box {
+  Vec3d lower{std::numeric_limits<double>::infinity()}, upper{-std::numeric_limits<double>::infinity()};
+
+  void add(const Vec3d& p) {
+    for (int i = 0; i < 3; ++i) {
+      lower[i] = std::min(lower[i], p[i]);
+      upper[i] = std::max(upper[i], p[i]);
+    }
+  }
+  std::array<Vec3d, 8> corners() const {
+    std::array<Vec3d, 8> all;
+    for (std::size_t i = 0; i < 8; ++i)
+      all[i] = {(i & 1 ? upper : lower).x, (i & 2 ? upper : lower).y, (i & 4 ? upper : lower).z};
+    return all;
+  }
+};
+
+Box box_of(const std::vector<Vec3d>& points) {
+  Box box;
+  for (const Vec3d& p : points) box.add(p);
+  return box;
+}
+
+/// The space of coordinates (p - center) / unit.
+struct Space {
+  Vec3d center;
+  double unit = 1;
+};
 
 /// Leaves only the positions that triangles use.
 template <class Point>
@@ -176,27 +224,50 @@ void SceneBuilder::join(Mesh& all, Mesh&& more) const {
   append(all, std::move(more));
 }
 
-void SceneBuilder::expand_instances() {
-  for (const Placed& instance : instances_) {
-    Mesh copy = objects_[instance.object];
-    apply(instance.transform, copy);
-    add_to_scene(std::move(copy));
-  }
-  objects_.clear();
-  instances_.clear();
+void SceneBuilder::expand(const Mesh& object, const Transform& transform) {
+  Mesh copy = object;
+  apply(transform, copy);
+  add_to_scene(std::move(copy));
 }
 
-void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
-  const std::size_t before = mesh_.triangles.size();
-  if (before > 0 && std::ranges::find(keep, false) == keep.end()) return;
-  keep_objects(mesh_.objects, keep);
-  keep_marked(mesh_.triangles, keep);
-  keep_marked(mesh_.triangle_material, keep);
-  keep_marked(mesh_.triangle_normals, keep);
-  keep_marked(mesh_.triangle_uvs, keep);
-  keep_marked(mesh_.triangle_colors, keep);
-  scene.dropped_triangles += before - mesh_.triangles.size();
-  if (!mesh_.triangles.empty()) return;
+/// Makes meshes of their own of all that is better not an instance: of every one where there are few
+/// triangles, and else of lights, which are sampled, and of what its transform skews so much that rounding a
+/// ray to its space would move it too far.
+void SceneBuilder::expand_instances() {
+  constexpr std::size_t few_triangles = std::size_t{1} << 20;
+  std::size_t shown = 0;
+  for (const Placed& instance : instances_) shown += objects_[instance.object].triangles.size();
+  const bool all =
+      instancing == Instancing::expand || (instancing == Instancing::automatic && shown <= few_triangles);
+
+  const auto emits = [&](std::uint16_t material) { return scene.materials[material].emits(); };
+  std::vector<Mesh> lights(objects_.size());
+  for (std::size_t i = 0; i < objects_.size() && !all; ++i) {
+    if (std::ranges::none_of(objects_[i].triangle_material, emits)) continue;
+    lights[i] = objects_[i];
+    keep_marked(lights[i], marked(objects_[i].triangle_material, emits));
+    drop_unused(lights[i].positions, lights[i].triangles);
+    keep_marked(objects_[i], marked(objects_[i].triangle_material, std::not_fn(emits)));
+  }
+  std::vector<Placed> kept;
+  for (const Placed& instance : instances_) {
+    const bool whole = all || instance.transform.skew() > most_skew;
+    scene.expanded_instances += whole;
+    if (whole) expand(objects_[instance.object], instance.transform);
+    if (!lights[instance.object].triangles.empty()) expand(lights[instance.object], instance.transform);
+    if (!whole && !objects_[instance.object].triangles.empty()) kept.push_back(instance);
+  }
+  instances_ = std::move(kept);
+}
+
+void SceneBuilder::keep_triangles(Mesh& mesh, const std::vector<bool>& keep) {
+  const std::size_t before = mesh.triangles.size();
+  keep_marked(mesh, keep);
+  scene.dropped_triangles += before - mesh.triangles.size();
+}
+
+void SceneBuilder::require_triangles() const {
+  if (!mesh_.triangles.empty() || !instances_.empty()) return;
   if (scene.dropped_triangles == 0 && without_faces_)
     throw InputError(SourcePlace{without_faces_->string()}, "no faces, so that the scene has no triangle");
   const std::string dropped = scene.dropped_triangles == 0
@@ -206,35 +277,68 @@ void SceneBuilder::keep_triangles(const std::vector<bool>& keep) {
   throw InputError(SourcePlace{scene.file.string()}, "the scene has no triangle" + dropped);
 }
 
-void SceneBuilder::drop_unusable() {
-  std::vector<bool> keep(mesh_.triangles.size());
+void SceneBuilder::drop_unusable(Mesh& mesh) {
+  std::vector<bool> keep(mesh.triangles.size());
   for (std::size_t t = 0; t < keep.size(); ++t) {
-    const Vec3d &a = mesh_.positions[mesh_.triangles[t][0]], &b = mesh_.positions[mesh_.triangles[t][1]],
-                &c = mesh_.positions[mesh_.triangles[t][2]];
+    const Vec3d &a = mesh.positions[mesh.triangles[t][0]], &b = mesh.positions[mesh.triangles[t][1]],
+                &c = mesh.positions[mesh.triangles[t][2]];
     keep[t] = is_finite(a) && is_finite(b) && is_finite(c) && a != b && b != c && c != a;
   }
-  keep_triangles(keep);
+  keep_triangles(mesh, keep);
+  drop_unused(mesh.positions, mesh.triangles);
 }
 
-void SceneBuilder::find_scene_space() {
-  Vec3d low = mesh_.positions.front(), high = low;
-  for (const Vec3d& p : mesh_.positions)
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  const Vec3d half = high * 0.5 - low * 0.5;
-  scene.center = low * 0.5 + high * 0.5;
+namespace {
+
+/// Every point of the box is of [-1,1]^3 in it.
+Space space_around(const Box& box) {
+  Space space;
+  const Vec3d half = box.upper * 0.5 - box.lower * 0.5;
+  space.center = box.lower * 0.5 + box.upper * 0.5;
   int exponent;
   const double fraction = std::frexp(max_component(half), &exponent);
-  scene.unit = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
-  if (!(scene.unit > 0)) scene.unit = 1;  // no extent: every triangle will be dropped
+  space.unit = std::ldexp(1.0, fraction == 0.5 ? exponent - 1 : exponent);
+  if (!(space.unit > 0)) space.unit = 1;  // no extent: every triangle will be dropped
+  return space;
+}
+
+}  // namespace
+
+void SceneBuilder::find_scene_space() {
+  Box all = box_of(mesh_.positions);
+  std::vector<Box> boxes;
+  for (const Mesh& object : objects_) boxes.push_back(box_of(object.positions));
+  for (const Placed& instance : instances_)
+    for (const Vec3d& corner : boxes[instance.object].corners()) all.add(instance.transform.point(corner));
+  const Space space = space_around(all);
+  scene.center = space.center;
+  scene.unit = space.unit;
+}
+
+/// Moves meshes to scene space and objects to theirs, and joins all.
+void SceneBuilder::move_to_scene_space() {
+  for (Vec3d& p : mesh_.positions) p = scene.to_scene(p);
+  std::vector<Space> spaces;
+  for (Mesh& object : objects_) {
+    const auto first = static_cast<std::uint32_t>(mesh_.triangles.size());
+    const Space& space = spaces.emplace_back(space_around(box_of(object.positions)));
+    for (Vec3d& p : object.positions) p = (p - space.center) / space.unit;
+    scene.shared_meshes.push_back({first, static_cast<std::uint32_t>(object.triangles.size())});
+    add_to_scene(std::exchange(object, {}));
+  }
+  for (const Placed& instance : instances_) {
+    const Space& space = spaces[instance.object];
+    SceneInstance placed{static_cast<std::uint32_t>(instance.object), {}, {}};
+    for (int i = 0; i < 3; ++i)
+      placed.rows[i] = Vec3f(instance.transform.rows[i] * (space.unit / scene.unit));
+    placed.translation = Vec3f(scene.to_scene(instance.transform.point(space.center)));
+    scene.instances.push_back(placed);
+  }
 }
 
 void SceneBuilder::round_positions() {
   scene.positions.resize(mesh_.positions.size());
-  for (std::size_t i = 0; i < mesh_.positions.size(); ++i)
-    scene.positions[i] = Vec3f(scene.to_scene(mesh_.positions[i]));
+  for (std::size_t i = 0; i < mesh_.positions.size(); ++i) scene.positions[i] = Vec3f(mesh_.positions[i]);
 }
 
 void SceneBuilder::warn_of_rounding() {
@@ -249,7 +353,7 @@ void SceneBuilder::warn_of_rounding() {
           longest, length(Vec3d(scene.positions[corners[i]]) - Vec3d(scene.positions[corners[(i + 1) % 3]])));
     if (longest > rounding / tolerated) continue;
     for (std::uint32_t i : corners)
-      error = std::max(error, length(Vec3d(scene.positions[i]) - scene.to_scene(mesh_.positions[i])));
+      error = std::max(error, length(Vec3d(scene.positions[i]) - mesh_.positions[i]));
     const double share = longest > 0 ? error / longest : 1;
     most = std::max(most, share);
     moved += share > tolerated;
@@ -284,18 +388,33 @@ void SceneBuilder::drop_flat() {
     const Index3& corners = mesh_.triangles[t];
     keep[t] = has_area(scene.positions[corners[0]], scene.positions[corners[1]], scene.positions[corners[2]]);
   }
-  keep_triangles(keep);
+  const auto kept = [&](std::uint32_t first, std::uint32_t count) {
+    return static_cast<std::uint32_t>(std::count(keep.begin() + first, keep.begin() + first + count, true));
+  };
+  std::uint32_t first = scene.shared_meshes.empty() ? 0 : kept(0, scene.shared_meshes.front().first);
+  for (SharedMesh& mesh : scene.shared_meshes) {
+    mesh = {first, kept(mesh.first, mesh.count)};
+    first += mesh.count;
+  }
+  keep_triangles(mesh_, keep);
 }
 
 Scene SceneBuilder::finish() {
+  for (Material& m : scene.materials)  // an image that is black everywhere is no light
+    if (mean_emission(scene, m) == Vec3d()) m.ke = {};
   expand_instances();
-  drop_unusable();
-  drop_unused(mesh_.positions, mesh_.triangles);
+  if (instances_.empty()) objects_.clear();
+  drop_unusable(mesh_);
+  for (Mesh& object : objects_) drop_unusable(object);
+  std::erase_if(instances_, [&](const Placed& i) { return objects_[i.object].triangles.empty(); });
+  require_triangles();
   find_scene_space();
+  move_to_scene_space();
   round_positions();
   warn_of_rounding();
   mesh_.positions = {};
   drop_flat();
+  require_triangles();
   drop_unused(scene.positions, mesh_.triangles);
   scene.triangles = std::move(mesh_.triangles);
   scene.triangle_material = std::move(mesh_.triangle_material);
@@ -308,9 +427,7 @@ Scene SceneBuilder::finish() {
   scene.triangle_colors = std::move(mesh_.triangle_colors);
   warn_of_missing_uvs();
   scene.warnings = warnings.take();
-  for (Material& m : scene.materials)  // an image that is black everywhere is no light
-    if (mean_emission(scene, m) == Vec3d()) m.ke = {};
-  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t)
+  for (std::uint32_t t = 0; t < scene.own_triangles(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
   for (DeltaLight& light : scene.delta_lights) light = scene.to_scene(light);
   scene.default_environment = scene.lights.empty() && scene.delta_lights.empty() && !environment_given;

@@ -22,11 +22,15 @@ struct Raster;
 /// are (1 + n) / 2, or n themselves in an image that has values below 0.
 enum class TextureMeaning : std::uint8_t { amounts, heights, normals };
 
+/// Whether instances stay what they are, or become meshes of their own.
+enum class Instancing : std::uint8_t { automatic, expand, keep };
+
 /// Gathers a scene's meshes in double, and moves them into scene space at the end.
 class SceneBuilder {
  public:
   Scene scene;  ///< all but what `finish` fills in: geometry, lights, warnings, the camera's place
-  bool environment_given = false;  ///< else, where nothing emits, the scene gets a white one
+  Instancing instancing = Instancing::automatic;  ///< automatic: kept where there are many triangles
+  bool environment_given = false;                 ///< else, where nothing emits, the scene gets a white one
   WarningList warnings;
   FileFinder files;
 
@@ -61,27 +65,29 @@ class SceneBuilder {
   Scene finish();
 
  private:
-  int add_raster(const TextureSource& source, const std::string& name, ColorSpace space,
-                 TextureMeaning meaning, const std::function<Raster()>& read);
-  void drop_unusable();
-  void find_scene_space();
-  void round_positions();
-  void warn_of_rounding();
-  void warn_of_missing_uvs();
-  void drop_flat();  ///< of those that rounding has made flat, too
-  void keep_triangles(const std::vector<bool>& keep);
-
   /// An object and where it is.
   struct Placed {
     std::size_t object;
     Transform transform;
   };
 
+  int add_raster(const TextureSource& source, const std::string& name, ColorSpace space,
+                 TextureMeaning meaning, const std::function<Raster()>& read);
   void join(Mesh& all, Mesh&& more) const;
   void add_to_scene(Mesh&& mesh);
-  void expand_instances();  ///< into meshes of their own
+  void expand_instances();
+  void expand(const Mesh& object, const Transform& transform);
+  void drop_unusable(Mesh& mesh);
+  void find_scene_space();
+  void move_to_scene_space();
+  void round_positions();
+  void warn_of_rounding();
+  void warn_of_missing_uvs();
+  void drop_flat();  ///< of those that rounding has made flat, too
+  void keep_triangles(Mesh& mesh, const std::vector<bool>& keep);
+  void require_triangles() const;
 
-  Mesh mesh_;
+  Mesh mesh_;  ///< what is no object's; in the end, everything
   std::vector<Mesh> objects_;
   std::vector<Placed> instances_;
   std::optional<std::filesystem::path> without_faces_;  ///< the first such file

@@ -175,6 +175,9 @@ class SceneFileReader {
   /// Meshes and, where they are placed, objects.
   void read_geometry(const ObjectReader& scene) {
     const JsonNode* instances = scene.find("instances");
+    if (const JsonNode* node = scene.find("instancing"))
+      builder_.instancing =
+          static_cast<Instancing>(choose(*node, "\"instancing\"", {"auto", "expand", "keep"}));
     if (const JsonNode* objects = scene.find("objects")) list_objects(*objects);
     if (instances)
       for (const JsonNode& node : read_array(*instances, "\"instances\"")) read_instance(node);
@@ -283,8 +286,8 @@ const std::vector<SceneSection>& scene_sections() {
   static const std::vector<SceneSection> sections = [] {
     std::vector<SceneSection> all = {
         {"scene",
-         {"$schema", "camera", "image", "render", "materials", "meshes", "objects", "instances", "lights",
-          "environment"}},
+         {"$schema", "camera", "image", "render", "materials", "meshes", "objects", "instances", "instancing",
+          "lights", "environment"}},
         {"camera", camera_keys},
         {"light", light_keys},
         {"lens", lens_keys},

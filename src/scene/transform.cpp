@@ -1,5 +1,6 @@
 #include "scene/transform.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -18,6 +19,19 @@ bool Transform::is_invertible() const {
   constexpr double rounding = 1e-13;
   const double volume = std::abs(determinant()), most = length(rows[0]) * length(rows[1]) * length(rows[2]);
   return volume > rounding * most && std::isfinite(most) && is_finite(translation);
+}
+
+double Transform::skew() const {
+  const double volume = std::abs(determinant());
+  const Vec3d cofactors[3] = {cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])};
+  double most = 1;
+  for (const Vec3d& row : rows) {  // of |this| |inverse|, whose columns the cofactors are
+    double sum = 0;
+    for (int i = 0; i < 3; ++i)
+      for (const Vec3d& cofactor : cofactors) sum += std::abs(row[i] * cofactor[i]);
+    most = std::max(most, sum / volume);
+  }
+  return most;
 }
 
 Transform Transform::then(const Transform& next) const {

@@ -15,6 +15,9 @@ struct Transform {
   double determinant() const { return dot(rows[0], cross(rows[1], rows[2])); }
   /// Whether it is finite and maps space onto space, beyond what rounding leaves of a matrix that does not.
   bool is_invertible() const;
+  /// How much it skews, at least 1: the most that mapping a box around a point and back widens it. A rotation
+  /// widens it up to 3 times, a change of lengths along the axes of the point's own space does not.
+  double skew() const;
 
   /// First this, then `next`.
   Transform then(const Transform& next) const;
@@ -24,6 +27,9 @@ struct Transform {
   static Transform rotate(const Vec3d& axis, double degrees);
   static Transform translate(const Vec3d& offset);
 };
+
+/// Of what is kept as an instance, at most.
+inline constexpr double most_skew = 16;
 
 /// Moves a mesh. A mirroring transform (negative determinant) also turns each triangle's corners round: the
 /// side that was outward, the side that emits, stays outward.

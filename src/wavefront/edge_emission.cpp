@@ -37,13 +37,13 @@ Vec3f EdgeEmission::at(int x, int y, std::uint64_t sample) const {
   Hit<float> hits[rays_of_a_sample];
   rays.closest([&](const RayBatch& b) { closest_hits(kernel_, data_, true, b); }, 0, rays.size(), hits);
   Vec3f sum;
-  for (std::size_t i = 0; i < rays_of_a_sample; ++i) sum += emission(hits[i].triangle, rays[i].direction);
+  for (std::size_t i = 0; i < rays_of_a_sample; ++i) sum += emission(hits[i], rays[i].direction);
   return sum / static_cast<float>(rays_of_a_sample);
 }
 
-Vec3f EdgeEmission::emission(std::uint32_t primitive, const Vec3f& direction) const {
-  if (primitive == Scene::no_index) return Vec3f(scene_.environment);
-  const auto [normal, material] = surface_hit(scene_, data_, primitive);
+Vec3f EdgeEmission::emission(const Hit<float>& hit, const Vec3f& direction) const {
+  if (!hit.found()) return Vec3f(scene_.environment);
+  const auto [normal, material] = surface_hit(scene_, data_, hit);
   const Material& m = scene_.materials[material];
   return m.two_sided_emission || dot(normal, direction) < 0 ? Vec3f(m.ke) : Vec3f();
 }

@@ -22,7 +22,7 @@ class EdgeEmission {
   Vec3f at(int x, int y, std::uint64_t sample) const;
 
  private:
-  Vec3f emission(std::uint32_t primitive, const Vec3f& direction) const;
+  Vec3f emission(const Hit<float>& hit, const Vec3f& direction) const;
 
   const Scene& scene_;
   const KernelApi& kernel_;

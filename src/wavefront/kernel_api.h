@@ -112,12 +112,16 @@ struct KernelApi {
   uint64_t scratch_bytes;
   /// By KernelFeature set; null where none is compiled. `scratch`: scratch_bytes, aligned to 64, of the
   /// calling thread.
-  RenderTiles render_tiles[8];
-  TraceLightPaths trace_light_paths[8];  ///< likewise; null without other materials than diffuse ones
+  RenderTiles render_tiles[kernel_feature_sets];
+  TraceLightPaths trace_light_paths[kernel_feature_sets];  ///< likewise; null without other materials than
+                                                           ///< diffuse ones, and with instances
   /// sample_block of core/sequences.h, for samples of the first epoch.
   void (*sample_block)(bool sobol, uint32_t key, uint32_t index, uint32_t block, float* u);
   void (*bvh_closest)(const WideBvhView&, const RayBatch&);      ///< the nearest hit of every ray
   void (*bvh_occluded)(const WideBvhView&, const ShadowBatch&);  ///< whether each ray hits anything
+  /// The same over instances.
+  void (*instances_closest)(const InstanceTree&, const RayBatch&);
+  void (*instances_occluded)(const InstanceTree&, const ShadowBatch&);
   /// The same over a list, with list_slack or segment_slack: t and facet of the nearest; whether one is at 0
   /// < t < 1.
   void (*facets_closest)(const FacetList&, float slack, const RayBatch&);

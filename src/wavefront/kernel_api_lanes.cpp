@@ -1,4 +1,5 @@
 #include "geometry/facets_lanes.h"
+#include "geometry/instance_tree_lanes.h"
 #include "geometry/wide_bvh_lanes.h"
 #include "lights/light_choice_batch_lanes.h"
 #include "materials/bsdf_batch_lanes.h"
@@ -17,23 +18,38 @@ void sample_block(bool sobol, uint32_t key, uint32_t index, uint32_t block, floa
   for (int d = 0; d < 4; ++d) u[d] = lane(n.u[d], 0);
 }
 
+void all_closest(const InstanceTree& tree, const RayBatch& rays) { instances_closest(tree, nullptr, rays); }
+void all_occluded(const InstanceTree& tree, const ShadowBatch& rays) {
+  instances_occluded(tree, nullptr, rays);
+}
+
+constexpr uint32_t instances = feature_bvh | feature_materials | feature_detail | feature_instances;
+
+KernelApi with_instances(KernelApi api) {
+  api.render_tiles[instances] = render_tiles_instances;
+  return api;
+}
+
 }  // namespace
 
 const KernelApi& kernel_api() {
-  static const KernelApi api{CASTRAY_TEXT(CASTRAY_ISA),
-                             width,
-                             sizeof(Scratch),
-                             {render_tiles_list_diffuse, render_tiles_bvh_diffuse, render_tiles_list,
-                              render_tiles_bvh, nullptr, nullptr, nullptr, render_tiles_bvh_detail},
-                             {nullptr, nullptr, trace_light_paths_list, trace_light_paths_bvh, nullptr,
-                              nullptr, nullptr, trace_light_paths_bvh_detail},
-                             sample_block,
-                             bvh_closest,
-                             bvh_occluded,
-                             facets_closest,
-                             facets_occluded,
-                             evaluate_bsdfs,
-                             choose_lights};
+  static const KernelApi api =
+      with_instances({CASTRAY_TEXT(CASTRAY_ISA),
+                      width,
+                      sizeof(Scratch),
+                      {render_tiles_list_diffuse, render_tiles_bvh_diffuse, render_tiles_list,
+                       render_tiles_bvh, nullptr, nullptr, nullptr, render_tiles_bvh_detail},
+                      {nullptr, nullptr, trace_light_paths_list, trace_light_paths_bvh, nullptr, nullptr,
+                       nullptr, trace_light_paths_bvh_detail},
+                      sample_block,
+                      bvh_closest,
+                      bvh_occluded,
+                      all_closest,
+                      all_occluded,
+                      facets_closest,
+                      facets_occluded,
+                      evaluate_bsdfs,
+                      choose_lights});
   return api;
 }
 

@@ -64,13 +64,18 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.geometry.list.blockers.exact = edges->view();
     view.geometry.list.blocker_fields = facets.blocker_field_list();
   } else {
-    bvh = WideBvh::build(mesh_of(scene), threads, plan.build);
+    if (scene.instances.empty()) {
+      bvh = WideBvh::build(mesh_of(scene), threads, plan.build);
+      view.geometry.tree.bvh = bvh->view();
+    } else {
+      instances = InstanceBvh::build(scene, threads, plan.build);
+      view.geometry.instances = instances->view();
+    }
     material_words = pack_materials(scene);
     const std::vector<Facet> emitting = emitting_facets(scene);
     lights = LightTable(scene, emitting, plan.choose_lights_by_importance, threads);
     view.lights = lights.list();
     view.lights.may_be_covered = may_be_covered(scene, emitting);
-    view.geometry.tree.bvh = bvh->view();
     view.geometry.tree.triangles = triangle_table(scene, material_words);
     view.geometry.tree.partial = partial_triangles(coverage);
   }
@@ -92,14 +97,15 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
 
 void look_through(KernelScene& view, const Camera& camera, int width, int height) {
   view.camera = kernel_camera(camera, width, height);
-  view.geometry.list.camera_slack = static_cast<float>(0x1p-21 * (2 + farthest_origin(camera, width, height)));
+  view.geometry.list.camera_slack =
+      static_cast<float>(0x1p-21 * (2 + farthest_origin(camera, width, height)));
 }
 
 void KernelSceneData::use(LightRegionTable regions, const Scene& scene) {
-  if (bvh)
-    lights.use(std::move(regions), emitting_facets(scene), false, scene.triangles.size());
-  else
+  if (is_list())
     lights.use(std::move(regions), facets.facets, true, scene.triangles.size());
+  else
+    lights.use(std::move(regions), emitting_facets(scene), false, scene.triangles.size());
   view.lights.regions = lights.list().regions;
 }
 

@@ -6,6 +6,7 @@
 #include "castray/render.h"
 #include "castray/scene.h"
 #include "geometry/facets.h"
+#include "geometry/instance_bvh.h"
 #include "geometry/wide_bvh.h"
 #include "lights/environment.h"
 #include "lights/light_table.h"
@@ -25,9 +26,12 @@ struct KernelSceneData {
   /// Makes the choice of lights know regions.
   void use(LightRegionTable regions, const Scene& scene);
 
+  bool is_list() const { return !bvh && !instances; }
+
   Facets facets;                              ///< of a list
   std::optional<FacetsInDouble> edges;        ///< of a list
   std::optional<WideBvh> bvh;                 ///< of a tree
+  std::optional<InstanceBvh> instances;       ///< of instances
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   Coverage coverage;
   KernelMaterials materials;

@@ -58,7 +58,7 @@ std::vector<Corner> corners(const Scene& scene, const KernelApi& kernel, const K
   std::vector<Corner> found(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!hits[i].found()) continue;
-    const auto [normal, material] = surface_hit(scene, data, hits[i].triangle);
+    const auto [normal, material] = surface_hit(scene, data, hits[i]);
     found[i] = {material, rays[i].origin + rays[i].direction * hits[i].t, normal};
   }
   return found;

@@ -55,7 +55,8 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     const Uint primitive = select(hit, found, Uint(0u));
     const Vec o = load(paths.o, i), d = load(paths.d, i), throughput = load(paths.throughput, i);
     const Float t = load(hits.t + i), b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
-    const SurfacePoint x = geometry.surface_point(o, d, {t, b1, b2, primitive});
+    const SurfaceHit at{t, b1, b2, primitive, select(hit, load(hits.instance + i), Uint(0u))};
+    const SurfacePoint x = geometry.surface_point(o, d, at);
     const Uint material = x.material * uint32_t{material_floats};
     const Float towards = dot(x.normal, d);
     const Mask front = towards < Float(0.f);
@@ -85,9 +86,10 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       const Vec to_viewer = -normalize(d);
       Vec shading_normal = facing;
       if constexpr (features & feature_detail) {
-        shading_normal = smooth_normal(scene.geometry.tree.triangles, place, facing, to_viewer);
-        bend_normals(scene, scene.geometry.tree.triangles, material, place, front, facing, to_viewer,
-                     shading_normal);
+        const TriangleTable& triangles = scene.geometry.tree.triangles;
+        const auto placement = geometry.placement(at);
+        shading_normal = smooth_normal(triangles, placement, place, facing, to_viewer);
+        bend_normals(scene, triangles, placement, material, place, front, facing, to_viewer, shading_normal);
       }
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);

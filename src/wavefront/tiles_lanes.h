@@ -15,6 +15,9 @@ void render_tiles_bvh(const KernelScene&, const KernelOptions&, const TileJob&, 
 void render_tiles_bvh_detail(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
                              TileResult&);
 
+void render_tiles_instances(const KernelScene&, const KernelOptions&, const TileJob&, void* scratch,
+                            TileResult&);
+
 uint64_t trace_light_paths_list(const KernelScene&, const KernelOptions&, const LightPathJob&, void* scratch,
                                 const SplatSink&);
 uint64_t trace_light_paths_bvh(const KernelScene&, const KernelOptions&, const LightPathJob&, void* scratch,

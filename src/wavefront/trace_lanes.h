@@ -11,7 +11,7 @@ CASTRAY_INLINE void closest(Context& c, const Paths& paths, bool from_camera, Hi
   c.rays += (uint64_t)paths.count;
   geometry_of<Geometry>(c).closest(
       {paths.o.x, paths.o.y, paths.o.z, paths.d.x, paths.d.y, paths.d.z, c.ends.infinite, hits.t,
-       hits.primitive, hits.b1, hits.b2, (uint32_t)paths.count},
+       hits.primitive, hits.b1, hits.b2, (uint32_t)paths.count, hits.instance},
       from_camera);
 }
 

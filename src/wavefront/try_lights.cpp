@@ -76,7 +76,7 @@ class Batch {
     std::vector<Vertex> found;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (!hits[i].found()) continue;
-      const auto [normal, material] = surface_hit(scene_, data_, hits[i].triangle);
+      const auto [normal, material] = surface_hit(scene_, data_, hits[i]);
       const Vec3f facing = dot(normal, rays[i].direction) < 0 ? normal : -normal;
       found.push_back({rays[i].origin + rays[i].direction * hits[i].t + facing * offset, facing,
                        rays[i].direction, names_[i],
@@ -102,8 +102,8 @@ class Batch {
       if (trial.tested) trials.push_back(trial);
     }
     std::vector<std::uint8_t> hidden(segments.size());
-    RayArrays(segments).occluded([&](const ShadowBatch& b) { occluded(b); }, 0, segments.size(),
-                                 hidden.data());
+    RayArrays(segments).occluded([&](const ShadowBatch& b) { occluded_segments(kernel_, data_, b); }, 0,
+                                 segments.size(), hidden.data());
     for (std::size_t i = 0; i < asked.size(); ++i)
       if (!hidden[i]) trials[asked[i].first].seen |= 1u << asked[i].second;
   }
@@ -161,11 +161,6 @@ class Batch {
       names_.push_back(x.path);
     }
     return rays;
-  }
-
-  void occluded(const ShadowBatch& rays) const {
-    if (data_.bvh) return kernel_.bvh_occluded(data_.bvh->view(), rays);
-    kernel_.facets_occluded(data_.view.geometry.list.blockers, segment_slack, rays);
   }
 
   const Scene& scene_;

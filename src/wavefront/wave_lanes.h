@@ -57,7 +57,7 @@ struct FarEnds {
 /// Closest hits: ray parameter, facet or triangle, and barycentrics of a triangle.
 struct Hits {
   alignas(64) FloatArray t, b1, b2;
-  alignas(64) UintArray primitive;
+  alignas(64) UintArray primitive, instance;  ///< the latter is written by InstanceGeometry alone
 };
 
 inline constexpr uint32_t seen_from_front = 0x80000000u;

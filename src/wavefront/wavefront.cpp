@@ -158,7 +158,8 @@ class WavefrontRun {
     if (job.options.camera)
       look_through(scene_, *job.options.camera, window_.full_width, window_.full_height);
     for (int i = 0; i < job.threads; ++i) workplaces_.emplace_back(kernel);
-    if (!job.options.jitter && !scene_.camera.has_lens && !scene_.geometry.tree.partial.triangles)
+    if (!job.options.jitter && !scene_.camera.has_lens && !scene_.geometry.tree.partial.triangles &&
+        !data.instances)
       find_first_hits();
     if (differences_) edges_ = PixelEdges(scene, kernel, data, window_, job.threads);
   }
@@ -402,7 +403,7 @@ class Wavefront final : public PreparedIntegrator {
     stats.isa = kernel_.name;
     stats.kernel = plan_.kernel;
     stats.skipped = plan_.skipped;
-    if (data_.bvh) stats.bvh_seconds = data_.bvh->stats().seconds;
+    if (!data_.is_list()) stats.bvh_seconds = tree_stats().seconds;
     stats.accel_summary = accel_summary();
   }
 
@@ -466,10 +467,12 @@ class Wavefront final : public PreparedIntegrator {
     if (open.sharing && sharing) choose_by_pilot(plan_, *sharing);
   }
 
+  const BvhStats& tree_stats() const { return data_.bvh ? data_.bvh->stats() : data_.instances->stats(); }
+
   std::string accel_summary() const {
-    if (!data_.bvh)
+    if (data_.is_list())
       return fmt::format("list: {} triangles as {} facets", triangles_, data_.facets.facets.size());
-    return fmt::format("{}, build {}", to_string(data_.bvh->stats()), name_of(plan_.build));
+    return fmt::format("{}, build {}", to_string(tree_stats()), name_of(plan_.build));
   }
 
   const Scene& scene_;

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "generate/shapes.h"
+#include "instanced.h"
 #include "integrators.h"
 #include "test_scenes.h"
 
@@ -158,4 +159,26 @@ TEST_CASE("of two spheres, one shining away from the other, no light reaches the
   check_segments("small triangles", {icosphere(16), 1e-6});
   check_segments("large triangles", {icosphere(1), 2e-5});
   check_segments("in double", {icosphere(1), 1e-6}, Which::double_precision);
+}
+
+TEST_CASE("no light passes a sealed shell that is an instance") {
+  for (const Shell& shell : shells())
+    for (const Material& material : {white, black, air}) {
+      SceneSketch sketch;
+      const auto lamp = sketch.add_material(glowing), around = sketch.add_material(black),
+                 inner = sketch.add_material(material);
+      sketch.add_cube(1, {}, true, lamp);
+      sketch.add_mesh(shell.shape.positions, shell.shape.triangles, 0.3, {0.1, 0.2, 0.05}, false, around);
+      sketch.add_mesh(shell.shape.positions, shell.shape.triangles, 0.29, {0.1, 0.2, 0.05}, false, inner);
+      look(sketch.scene, {0.1, 0.2, 0.1}, {0.3, 0.1, -0.2});
+      for (const Transform& place : kinds_of_places()) {
+        const Scene scene = as_instances(sketch.scene, {place, place});
+        for (const Way& way : every_way(small(4))) {
+          if (way.options.integrator == Integrator::reference || way.options.accel == AccelKind::list)
+            continue;
+          CAPTURE(shell.name, material.name, way.name);
+          CHECK(lit_pixels(scene, way.options) == 0);
+        }
+      }
+    }
 }

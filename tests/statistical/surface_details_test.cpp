@@ -4,6 +4,7 @@
 
 #include "box_scenes.h"
 #include "castray_blocks.h"
+#include "instanced.h"
 #include "integrators.h"
 #include "materials/texture.h"
 
@@ -213,7 +214,7 @@ TEST_CASE("the wavefront agrees with castRay on bent normals", "[statistical]") 
 }
 
 TEST_CASE("every kernel agrees with castRay where everything differs from point to point", "[statistical]") {
-  const Scene scene = with_everything();
+  const Scene scene = with_everything(), instanced = as_instances(scene, kinds_of_places());
   RenderOptions reference = wavefront_options(8);
   reference.mis = Switch::on;
   const Expected expected(scene, reference);
@@ -223,6 +224,8 @@ TEST_CASE("every kernel agrees with castRay where everything differs from point 
     options.mis = Switch::on;
     expected.check(isa, scene, options);
     expected.check(isa + ", plain", scene, plain(options));
+    expected.check(isa + ", instances", instanced, options);
+    expected.check(isa + ", instances, plain", instanced, plain(options));
   }
   RenderOptions in_float = as_reference(reference);
   in_float.precision = Precision::float32;

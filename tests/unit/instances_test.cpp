@@ -1,9 +1,14 @@
 #include <catch2/catch.hpp>
 
 #include <fstream>
+#include <random>
 #include <string>
 
 #include "castray/scene.h"
+#include "geometry/bvh.h"
+#include "geometry/instance_bvh.h"
+#include "instanced.h"
+#include "stress_checks.h"
 #include "temporary_folder.h"
 
 using namespace castray;
@@ -38,6 +43,11 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.uvs == b.uvs);
   CHECK(a.triangle_uvs == b.triangle_uvs);
   CHECK(a.lights == b.lights);
+}
+
+void check_near(const Vec3d& found, const Vec3d& expected) {
+  INFO(found.x << ' ' << found.y << ' ' << found.z);
+  for (int i = 0; i < 3; ++i) CHECK(found[i] == Approx(expected[i]).margin(1e-6));
 }
 
 }  // namespace
@@ -77,4 +87,149 @@ TEST_CASE("a scene may be made of instances alone, and may leave an object out")
   REQUIRE(other.warnings.size() == 1);
   CHECK(other.warnings[0].message == "object 'thing' has no instance");
   CHECK(other.warnings[0].harmless);
+}
+
+namespace {
+
+const std::string kept_twice =
+    R"("instancing": "keep", "instances": [ { "object": "thing", "transform": [ { "scale": 2 } ] },
+        { "object": "thing", "transform": [ { "scale": [-1,1,1] }, { "translate": [-3,0,0] } ] } ])";
+
+}  // namespace
+
+TEST_CASE("instances that are kept share triangles; their lights do not") {
+  const Scene scene = load_with(object + kept_twice + R"(, "meshes": [ { "obj": "floor.obj" } ])");
+  CHECK(scene.own_triangles() == 3);  // the floor's and two lamps'
+  CHECK(scene.lights.size() == 2);
+  REQUIRE(scene.shared_meshes.size() == 1);
+  CHECK(scene.shared_meshes[0].count == 1);
+  CHECK(scene.instances.size() == 2);
+  CHECK(scene.triangles.size() == 4);
+  CHECK(scene.shown_triangles() == 5);
+  const auto [low, high] = scene.bounds();
+  check_near(scene.to_world(low), {-4, 0, -1});
+  check_near(scene.to_world(high), {2, 2, 4});
+  const SceneInstance& mirrored = scene.instances[1];
+  const Vec3d corner(scene.positions[scene.triangles[3][1]]);  // (1,0,0) of the thing
+  Vec3d moved;
+  for (int i = 0; i < 3; ++i)
+    moved[i] = dot(Vec3d(mirrored.rows[i]), corner) + double{mirrored.translation[i]};
+  check_near(scene.to_world(moved), {-4, 0, 0});
+}
+
+TEST_CASE("an instance that its transform skews too much becomes a mesh") {
+  const Scene scene = load_with(object + R"("instancing": "keep", "instances": [ { "object": "thing",
+      "transform": [ { "rotate": [0,0,1,45] }, { "scale": [1,1e3,1] }, { "rotate": [0,0,1,45] } ] } ])");
+  CHECK(scene.instances.empty());
+  CHECK(scene.expanded_instances == 1);
+  CHECK(scene.own_triangles() == 2);
+}
+
+namespace {
+
+/// A mesh as a scene, and the same as an instance.
+struct Pair {
+  Scene flat, instanced;
+};
+
+Pair pair_of(const FloatMesh& mesh, const Transform& place) {
+  Scene flat;
+  flat.positions = mesh.positions;
+  flat.triangles = mesh.triangles;
+  flat.materials.emplace_back();
+  flat.triangle_material.assign(mesh.triangles.size(), 0);
+  return {flat, test::as_instances(flat, {place})};
+}
+
+std::vector<Hit<float>> closest(const KernelApi& kernel, const InstanceBvh& tree, const RayArrays& rays) {
+  std::vector<Hit<float>> hits(rays.size());
+  rays.closest([&](const RayBatch& b) { kernel.instances_closest(tree.view(), b); }, 0, rays.size(),
+               hits.data());
+  return hits;
+}
+
+std::vector<std::uint8_t> occluded(const KernelApi& kernel, const InstanceBvh& tree, const RayArrays& rays) {
+  std::vector<std::uint8_t> found(rays.size());
+  rays.occluded([&](const ShadowBatch& b) { kernel.instances_occluded(tree.view(), b); }, 0, rays.size(),
+                found.data());
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("no ray leaves a closed mesh that is an instance, through seams or elsewhere") {
+  for (const ClosedShape& closed :
+       {closed_icosphere(5), closed_sliver_sphere(10, 3), closed_torus_knot(60, 8)}) {
+    const FloatMesh mesh = place(closed.shape, 0.5);
+    const std::vector<Ray<float>> at_seams = rays_at_seams<float>(closed, mesh, 0.5, 0, 2000, 5);
+    for (const Transform& at : test::kinds_of_places()) {
+      const Pair scenes = pair_of(mesh, at);
+      const InstanceBvh tree = InstanceBvh::build(scenes.instanced, 1, BuildQuality::fast);
+      for (const KernelApi* kernel : available_kernels()) {
+        CAPTURE(closed.name, kernel->name);
+        const RayArrays rays(at_seams);
+        CHECK(std::ranges::count_if(closest(*kernel, tree, rays), &Hit<float>::found) ==
+              std::ssize(at_seams));
+        CHECK(std::ranges::count(occluded(*kernel, tree, rays), 1) == std::ssize(at_seams));
+      }
+    }
+  }
+}
+
+TEST_CASE("rays meet instances where they meet the flattened mesh in double") {
+  const FloatMesh mesh = place(closed_torus_knot(200, 12).shape, 0.4);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> coordinate(-1, 1);
+  const auto point = [&] {
+    const float x = coordinate(random), y = coordinate(random);
+    return Vec3f{x, y, coordinate(random)};
+  };
+  std::vector<Ray<float>> rays(4000);
+  for (Ray<float>& ray : rays) {
+    ray.origin = point();
+    ray.direction = point();
+  }
+  for (const Transform& at : test::kinds_of_places()) {
+    const Pair scenes = pair_of(mesh, at);
+    const Bvh flat = Bvh::build(mesh_of(scenes.flat), 1);
+    const InstanceBvh tree = InstanceBvh::build(scenes.instanced, 1, BuildQuality::fast);
+    for (const KernelApi* kernel : available_kernels()) {
+      CAPTURE(kernel->name);
+      const auto hits = closest(*kernel, tree, RayArrays(rays));
+      const auto blocked = occluded(*kernel, tree, RayArrays(rays));
+      int found = 0, differ = 0;
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit<double> expected =
+            flat.closest(Ray<double>{Vec3d(rays[i].origin), Vec3d(rays[i].direction)});
+        CHECK(hits[i].found() == (blocked[i] == 1));
+        found += hits[i].found();
+        // in distance, which rounding stretches where a ray grazes
+        const double apart = (double{hits[i].t} - expected.t) * length(Vec3d(rays[i].direction));
+        differ += hits[i].found() != expected.found() || (hits[i].found() && std::abs(apart) > 1e-5);
+      }
+      CHECK(found > 100);
+      CHECK(differ <= 2);  // such rays may pass an outline on its other side
+    }
+  }
+}
+
+TEST_CASE("all kernels find the same hits on instances, whatever the threads of the build") {
+  const Scene flat = test::standard_scene("cornell_obj");
+  const Scene scene = test::as_instances(flat, test::kinds_of_places());
+  FloatMesh mesh{flat.positions, flat.triangles};
+  const RayArrays rays(rays_around(mesh, 3000, 7));
+  const InstanceBvh tree = InstanceBvh::build(scene, 1, BuildQuality::fast);
+  const auto kernels = available_kernels();
+  const auto expected = closest(*kernels[0], tree, rays);
+  const auto same = [&](const std::vector<Hit<float>>& hits) {
+    return std::ranges::equal(hits, expected, [](const Hit<float>& a, const Hit<float>& b) {
+      return a.triangle == b.triangle && a.instance == b.instance;
+    });
+  };
+  CHECK(std::ranges::count_if(expected, &Hit<float>::found) > 500);
+  for (const KernelApi* kernel : kernels) {
+    CAPTURE(kernel->name);
+    CHECK(same(closest(*kernel, tree, rays)));
+    CHECK(same(closest(*kernel, InstanceBvh::build(scene, 3, BuildQuality::best), rays)));
+  }
 }

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "geometry/instance_records.h"
+#include "geometry/presence_lanes.h"
+#include "geometry/shaft_lanes.h"
+
+namespace castray::CASTRAY_ISA {
+
+/// As triangle_shaft, of the triangles in scene space. False also if the shaft may meet any other instance:
+/// then rays must tell. `there`: as for instances_closest.
+template <class Apex>
+bool instance_shaft(const InstanceTree& tree, const PartlyThere* there, const Apex& apex, const Box& box,
+                    ShaftBudget& budget, Shaft& out);
+
+}  // namespace castray::CASTRAY_ISA
