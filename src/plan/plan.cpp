@@ -130,9 +130,7 @@ void choose_caustics(Plan& plan, double gain_of_light_paths) {
 }
 
 void choose_by_pilot(Plan& plan, double gain_of_sharing) {
-  // What images from differences gain by shared paths is not in it.
-  constexpr double worth_sharing = 0.9;
-  if (gain_of_sharing < worth_sharing) plan.suffixes = 0;
+  if (gain_of_sharing < 1) plan.suffixes = 0;
   plan.kernel = fmt::format("{} (by a pilot, sharing is {:.2g} times as efficient as plain paths)",
                             kernel_name(plan), gain_of_sharing);
 }
