@@ -14,7 +14,7 @@ struct TreeBytes {
 /// Of small trees what is freed meanwhile may not come back: the C library returns blocks of more than 32 MiB
 /// at once, and a builder's largest have 32 bytes a triangle.
 constexpr std::uint64_t small_tree = 1 << 20;  ///< triangles
-constexpr TreeBytes small_fast_tree{130, 58}, fast_tree{80, 58}, cut_tree{400, 175}, reference_tree{180, 58};
+constexpr TreeBytes small_fast_tree{130, 58}, fast_tree{80, 58}, cut_tree{440, 175}, reference_tree{180, 58};
 constexpr std::uint64_t bytes_of_any_tree = 2 << 20;
 constexpr std::uint64_t bytes_of_instance = 400;  ///< matrices, references, and nodes over it
 constexpr std::uint64_t bytes_of_facet = 650;  ///< of a list, while pairs of triangles are found

@@ -400,8 +400,6 @@ void SceneBuilder::drop_flat() {
 }
 
 Scene SceneBuilder::finish() {
-  for (Material& m : scene.materials)  // an image that is black everywhere is no light
-    if (mean_emission(scene, m) == Vec3d()) m.ke = {};
   expand_instances();
   if (instances_.empty()) objects_.clear();
   drop_unusable(mesh_);
@@ -427,6 +425,8 @@ Scene SceneBuilder::finish() {
   scene.triangle_colors = std::move(mesh_.triangle_colors);
   warn_of_missing_uvs();
   scene.warnings = warnings.take();
+  for (Material& m : scene.materials)  // an image that is black everywhere is no light
+    if (mean_emission(scene, m) == Vec3d()) m.ke = {};
   for (std::uint32_t t = 0; t < scene.own_triangles(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
   for (DeltaLight& light : scene.delta_lights) light = scene.to_scene(light);

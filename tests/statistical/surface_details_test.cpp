@@ -225,8 +225,10 @@ TEST_CASE("every kernel agrees with castRay where everything differs from point 
     expected.check(isa, scene, options);
     expected.check(isa + ", plain", scene, plain(options));
     expected.check(isa + ", instances", instanced, options);
-    expected.check(isa + ", instances, plain", instanced, plain(options));
   }
+  RenderOptions options = wavefront_options(4);
+  options.mis = Switch::on;
+  expected.check("instances, plain", instanced, plain(options));
   RenderOptions in_float = as_reference(reference);
   in_float.precision = Precision::float32;
   in_float.seed = 7;

@@ -27,6 +27,10 @@ inline std::vector<std::string> instruction_sets() {
   return sets;
 }
 
+/// Whether the set multiplies and adds in one rounding: sets that do give the same bytes, as do those that do
+/// not.
+inline bool has_fma(const std::string& set) { return set == "avx2" || set == "avx512"; }
+
 /// The reference in both precisions, and the wavefront with each instruction set, over list and tree, with
 /// shared and plain paths, all with the size and samples of `options`.
 inline std::vector<Way> every_way(const RenderOptions& options) {

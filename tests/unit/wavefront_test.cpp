@@ -3,6 +3,7 @@
 #include "box_scenes.h"
 #include "core/sequences.h"
 #include "film_bytes.h"
+#include "integrators.h"
 #include "test_scenes.h"
 #include "wavefront/choose_kernel.h"
 
@@ -19,20 +20,6 @@ RenderOptions small(const std::string& isa) {
   options.isa = isa;
   return options;
 }
-
-/// The instruction sets that this processor has.
-std::vector<std::string> available_sets() {
-  std::vector<std::string> sets;
-  for (const char* name : {"scalar", "sse4", "avx2", "avx512"}) {
-    try {
-      sets.push_back(choose_kernel(name).name);
-    } catch (const std::exception&) {  // this processor does not have it
-    }
-  }
-  return sets;
-}
-
-bool has_fma(const std::string& set) { return set == "avx2" || set == "avx512"; }
 
 std::vector<Vec3f> pixels(const Scene& scene, const RenderOptions& options) {
   return render(scene, options).film.image().pixels;
@@ -82,7 +69,7 @@ TEST_CASE("instruction sets with fused multiply-add give the same bytes") {
     for (const bool shared : {true, false}) {
       const Scene scene = standard_scene(name);
       std::vector<std::vector<Vec3f>> images, images_by_angle;
-      for (const std::string& set : available_sets()) {
+      for (const std::string& set : instruction_sets()) {
         if (!has_fma(set)) continue;
         RenderOptions options = small(set);
         options.reuse.automatic = shared;
@@ -131,7 +118,7 @@ TEST_CASE("threads, crops, sample ranges and instruction sets do not show in cau
   CHECK_THAT(whole.film.key, Catch::Contains("; light-paths=on"));
   check_parts(scene, options, whole.film);
 
-  for (const std::string& set : available_sets()) {
+  for (const std::string& set : instruction_sets()) {
     options.isa = set;
     if (has_fma(set) && has_fma(whole.stats.isa))
       CHECK(bytes(render(scene, options).film) == bytes(whole.film));
@@ -163,7 +150,7 @@ TEST_CASE("tiles with ragged edges and moved grids give every pixel each sample 
 }
 
 TEST_CASE("the kernels draw the numbers of sample_block") {
-  for (const std::string& set : available_sets())
+  for (const std::string& set : instruction_sets())
     for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::independent})
       for (std::uint32_t i = 0; i < 2000; ++i) {
         const std::uint32_t key = hash32(i), index = hash32(i + 7) >> 12, block = i % 23;
