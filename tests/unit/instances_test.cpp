@@ -222,8 +222,8 @@ TEST_CASE(
   const RayArrays rays(rays_around(FloatMesh{flat.positions, flat.triangles}, 3000, 7));
   const InstanceBvh tree = InstanceBvh::build(scene, 1, BuildQuality::fast),
                     other = InstanceBvh::build(scene, 3, BuildQuality::best);
-  std::map<bool, std::vector<Hit<float>>>
-      first;  // by has_fma: half of the rays meet vertices, where rounding decides
+  // By has_fma: half of the rays meet vertices, where rounding decides.
+  std::map<bool, std::vector<Hit<float>>> first;
   const auto same = [](const Hit<float>& a, const Hit<float>& b) {
     return a.triangle == b.triangle && a.instance == b.instance;
   };
