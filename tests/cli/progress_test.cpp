@@ -165,17 +165,3 @@ TEST_CASE("a scene that takes long to read is told in lines, and in a bar that f
   held.close();
   CHECK(process.wait().exit_code == 0);
 }
-
-TEST_CASE("reading 8 million triangles and building their tree are told", "[long]") {
-  const TemporaryFolder folder;
-  std::ofstream obj(folder / "big.obj");
-  obj << "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-  for (int i = 0; i < 8000000; ++i) obj << "f 1 2 3\n";
-  obj.close();
-  const std::string lines = run_castray({"render", "big.obj", "--size", "8x8", "--spp", "1", "--threads", "1",
-                                         "--progress", "lines"},
-                                        folder.path())
-                                .err;
-  CHECK_THAT(lines, Contains("castray: reading big.obj  0:0") &&
-                        Contains("castray: preparing 8000000 triangles  0:0"));
-}
