@@ -78,6 +78,12 @@ struct SceneInstance {
   std::uint32_t mesh = 0;  ///< into Scene::shared_meshes
   Vec3f rows[3];
   Vec3f translation;
+
+  Vec3d linear(const Vec3d& v) const {
+    return {dot(Vec3d(rows[0]), v), dot(Vec3d(rows[1]), v), dot(Vec3d(rows[2]), v)};
+  }
+  Vec3d point(const Vec3d& p) const { return linear(p) + Vec3d(translation); }
+  bool mirrors() const { return dot(Vec3d(rows[0]), cross(Vec3d(rows[1]), Vec3d(rows[2]))) < 0; }
 };
 
 /// A scene, an immutable value once loaded.

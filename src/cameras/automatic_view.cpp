@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "castray/scene.h"
+#include "core/box.h"
 
 namespace castray {
 
@@ -122,8 +123,7 @@ Camera automatic_camera(const Scene& scene) {
   const auto [low, high] = scene.bounds();
   const Vec3d middle = (low + high) * 0.5;
   std::vector<Vec3d> corners;
-  for (int i = 0; i < 8; ++i)
-    corners.push_back(Vec3d{i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z} - middle);
+  for (const Vec3d& corner : Box3d{low, high}.corners()) corners.push_back(corner - middle);
 
   // From where to look, the usual views first; a later one must show clearly more.
   constexpr double clearly = 1.15;

@@ -139,11 +139,17 @@ class InstanceTraversal {
     queue(s, stack_of(s, --size_[s]).child[0]);
   }
 
+  /// Empties a queue into `now`, as slots may be queued anew while those are visited; returns how many.
+  static CASTRAY_INLINE uint32_t take(const uint8_t* queue, uint32_t& count, uint8_t* now) {
+    const uint32_t n = count;
+    __builtin_memcpy(now, queue, slots);
+    count = 0;
+    return n;
+  }
+
   CASTRAY_INLINE void visit_nodes() {
     uint8_t now[slots];
-    const uint32_t n = node_count_;
-    __builtin_memcpy(now, nodes_, slots);
-    node_count_ = 0;
+    const uint32_t n = take(nodes_, node_count_, now);
     for (uint32_t i = 0; i < n; ++i) {
       const uint32_t s = now[i];
       size_[s] +=
@@ -154,9 +160,7 @@ class InstanceTraversal {
 
   CASTRAY_INLINE void visit_leaves() {
     uint8_t now[slots];
-    const uint32_t n = leaf_count_;
-    __builtin_memcpy(now, leaves_, slots);
-    leaf_count_ = 0;
+    const uint32_t n = take(leaves_, leaf_count_, now);
     for (uint32_t i = 0; i < n; ++i) {
       const uint32_t s = now[i];
       if (intersect_leaf(s)) size_[s] = any ? base_[s] = 0 : base_[s] + drop_behind_hit(s);
@@ -185,10 +189,8 @@ class InstanceTraversal {
   }
 
   CASTRAY_INLINE void enter_instances() {
-    const uint32_t n = entry_count_;
-    uint8_t now[slots + width];
-    __builtin_memcpy(now, entries_, slots);
-    entry_count_ = 0;
+    uint8_t now[slots];
+    const uint32_t n = take(entries_, entry_count_, now);
     alignas(64) uint32_t ray[slots + width] = {}, instance[slots + width] = {};
     for (uint32_t i = 0; i < n; ++i) {
       ray[i] = first_ + ray_[now[i]];

@@ -5,19 +5,6 @@
 namespace castray::CASTRAY_ISA {
 namespace {
 
-template <class Batch>
-CASTRAY_INLINE void prepare_group(const InstanceTree& tree, const Batch& rays, uint32_t first, uint32_t count,
-                                  RayGroup& group) {
-  const uint32_t last = first + count;
-  for (uint32_t i = first; i < last; i += width) {
-    const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last),
-                        load_padded(rays.oz, i, last)};
-    const Float d[3] = {load_padded(rays.dx, i, last), load_padded(rays.dy, i, last),
-                        load_padded(rays.dz, i, last)};
-    prepare(group, i - first, tree.top, o, d, load_padded(rays.t_max, i, last), Slack{tree.slack});
-  }
-}
-
 /// Traces all groups of a batch; `hits_of` says where those of the group from a ray on go, `done` gets each
 /// group.
 template <bool any, class Counts, class Batch, class HitsOf, class Done>
@@ -37,7 +24,7 @@ CASTRAY_INLINE void trace_batch(const InstanceTree& tree, const Counts& counts, 
       hits.triangle[i] = hits.instance[i] = no_hit;
       hits.b1[i] = hits.b2[i] = 0;
     }
-    prepare_group(tree, rays, first, count, group);
+    prepare_rays(group, tree.top, rays, first, count, Slack{tree.slack});
     traversal.run(group, first, count, hits);
     done(first, count);
   }

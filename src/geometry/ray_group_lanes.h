@@ -93,4 +93,18 @@ CASTRAY_INLINE void prepare(RayGroup& group, uint32_t first, const WideBvhView& 
   store(group.octant + first, octant);
 }
 
+/// Fills the group with rays first .. first + count - 1 of a batch.
+template <class Batch, class AnySlack = NoSlack>
+CASTRAY_INLINE void prepare_rays(RayGroup& group, const WideBvhView& bvh, const Batch& rays, uint32_t first,
+                                 uint32_t count, const AnySlack& slack = {}) {
+  const uint32_t last = first + count;
+  for (uint32_t i = first; i < last; i += width) {
+    const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last),
+                        load_padded(rays.oz, i, last)};
+    const Float d[3] = {load_padded(rays.dx, i, last), load_padded(rays.dy, i, last),
+                        load_padded(rays.dz, i, last)};
+    prepare(group, i - first, bvh, o, d, load_padded(rays.t_max, i, last), slack);
+  }
+}
+
 }  // namespace castray::CASTRAY_ISA

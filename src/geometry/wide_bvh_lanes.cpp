@@ -16,14 +16,7 @@ template <bool any, class Counts, class Batch>
 CASTRAY_INLINE void trace(const WideBvhView& bvh, const Counts& counts, const Batch& rays, uint32_t first,
                           uint32_t count, RayGroup& group, float* stack_t, uint32_t* stack_child,
                           const Hits& hits) {
-  const uint32_t last = first + count;
-  for (uint32_t i = first; i < last; i += width) {
-    const Float o[3] = {load_padded(rays.ox, i, last), load_padded(rays.oy, i, last),
-                        load_padded(rays.oz, i, last)};
-    const Float d[3] = {load_padded(rays.dx, i, last), load_padded(rays.dy, i, last),
-                        load_padded(rays.dz, i, last)};
-    prepare(group, i - first, bvh, o, d, load_padded(rays.t_max, i, last));
-  }
+  prepare_rays(group, bvh, rays, first, count);
   for (uint32_t i = 0; i < count; ++i) {
     hits.t[i] = __builtin_inff();
     hits.triangle[i] = no_hit;

@@ -10,6 +10,7 @@
 
 #include "castray/error.h"
 #include "castray/image.h"
+#include "core/box.h"
 #include "core/text.h"
 #include "materials/surface_values.h"
 
@@ -63,25 +64,8 @@ std::vector<bool> marked(const std::vector<T>& values, const Predicate& is_marke
   return marks;
 }
 
-struct Box {
-  Vec3d lower{std::numeric_limits<double>::infinity()}, upper{-std::numeric_limits<double>::infinity()};
-
-  void add(const Vec3d& p) {
-    for (int i = 0; i < 3; ++i) {
-      lower[i] = std::min(lower[i], p[i]);
-      upper[i] = std::max(upper[i], p[i]);
-    }
-  }
-  std::array<Vec3d, 8> corners() const {
-    std::array<Vec3d, 8> all;
-    for (std::size_t i = 0; i < 8; ++i)
-      all[i] = {(i & 1 ? upper : lower).x, (i & 2 ? upper : lower).y, (i & 4 ? upper : lower).z};
-    return all;
-  }
-};
-
-Box box_of(const std::vector<Vec3d>& points) {
-  Box box;
+Box3d box_of(const std::vector<Vec3d>& points) {
+  Box3d box;
   for (const Vec3d& p : points) box.add(p);
   return box;
 }
@@ -291,7 +275,7 @@ void SceneBuilder::drop_unusable(Mesh& mesh) {
 namespace {
 
 /// Every point of the box is of [-1,1]^3 in it.
-Space space_around(const Box& box) {
+Space space_around(const Box3d& box) {
   Space space;
   const Vec3d half = box.upper * 0.5 - box.lower * 0.5;
   space.center = box.lower * 0.5 + box.upper * 0.5;
@@ -305,8 +289,8 @@ Space space_around(const Box& box) {
 }  // namespace
 
 void SceneBuilder::find_scene_space() {
-  Box all = box_of(mesh_.positions);
-  std::vector<Box> boxes;
+  Box3d all = box_of(mesh_.positions);
+  std::vector<Box3d> boxes;
   for (const Mesh& object : objects_) boxes.push_back(box_of(object.positions));
   for (const Placed& instance : instances_)
     for (const Vec3d& corner : boxes[instance.object].corners()) all.add(instance.transform.point(corner));

@@ -2,16 +2,6 @@
 
 namespace castray {
 
-namespace {
-
-/// A vector of an object's space in scene space.
-Vec3d moved(const SceneInstance& instance, const Vec3d& v) {
-  const auto& rows = instance.rows;
-  return {dot(Vec3d(rows[0]), v), dot(Vec3d(rows[1]), v), dot(Vec3d(rows[2]), v)};
-}
-
-}  // namespace
-
 void closest_hits(const KernelApi& kernel, const KernelSceneData& data, bool from_camera,
                   const RayBatch& rays) {
   if (data.bvh) return kernel.bvh_closest(data.bvh->view(), rays);
@@ -34,14 +24,15 @@ SurfaceHit surface_hit(const Scene& scene, const KernelSceneData& data, const Hi
   const Index3& t = scene.triangles[hit.triangle];
   const Vec3d v0(scene.positions[t[0]]);
   Vec3d e1 = Vec3d(scene.positions[t[1]]) - v0, e2 = Vec3d(scene.positions[t[2]]) - v0;
-  double side = 1;
+  bool mirrored = false;
   if (hit.instance < scene.instances.size()) {
     const SceneInstance& instance = scene.instances[hit.instance];
-    side = dot(moved(instance, {1, 0, 0}), cross(moved(instance, {0, 1, 0}), moved(instance, {0, 0, 1})));
-    e1 = moved(instance, e1);
-    e2 = moved(instance, e2);
+    mirrored = instance.mirrors();
+    e1 = instance.linear(e1);
+    e2 = instance.linear(e2);
   }
-  return {Vec3f(normalize(cross(e1, e2)) * (side < 0 ? -1.0 : 1.0)), scene.triangle_material[hit.triangle]};
+  const Vec3d normal = normalize(cross(e1, e2));
+  return {Vec3f(mirrored ? -normal : normal), scene.triangle_material[hit.triangle]};
 }
 
 }  // namespace castray
