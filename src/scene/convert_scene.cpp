@@ -37,12 +37,13 @@ struct Source {
 };
 
 Source read_gltf_source(const GltfDocument& document, WarningList warnings) {
-  Source source{scene_of_gltf(document, std::move(warnings)), "gltf", {}, {}, {}, [&document](int image) {
-                  return std::string(embedded_image(document, static_cast<std::size_t>(image)));
-                }};
+  const GltfNodes nodes = place_nodes(document);
+  Source source{
+      scene_of_gltf(document, nodes, std::move(warnings)), "gltf", {}, {}, {}, [&document](int image) {
+        return std::string(embedded_image(document, static_cast<std::size_t>(image)));
+      }};
   for (std::size_t m = 0; m < source.scene.materials.size(); ++m)
     source.materials[source.scene.materials[m].name] = static_cast<std::uint16_t>(m);
-  const GltfNodes nodes = place_nodes(document);
   if (!nodes.cameras.empty()) source.camera = camera_json(document, nodes.cameras.front());
   WarningList told;  // by scene_of_gltf
   for (const GltfPlaced& light : nodes.lights) source.lights.push_back(light_json(document, light, told));

@@ -284,13 +284,9 @@ GltfUvs uvs_of(const GltfDocument& document, int index) {
 }
 
 Material make_material(const GltfDocument& document, int index, bool vertex_colors, SceneBuilder& builder) {
-  if (index >= 0) {
-    Material made =
-        GltfMaterialReader(document, static_cast<std::size_t>(index), builder).read(vertex_colors);
-    made.name = material_names(document)[static_cast<std::size_t>(index)];
-    return made;
-  }
-  return {.name = material_names(document).back(),
+  if (index >= 0)
+    return GltfMaterialReader(document, static_cast<std::size_t>(index), builder).read(vertex_colors);
+  return {.name = {},
           .type = MaterialType::principled,
           .kd = Vec3d(1),
           .ks = Vec3d(0.04),

@@ -32,24 +32,28 @@ Transform matrix_of(const std::vector<double>& m) {
   return {{{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}}, {m[12], m[13], m[14]}};
 }
 
+/// Scaled, then turned by the quaternion, then moved; what is null is left out.
+template <class Number>
+Transform of_steps(const Number* scale, const Number* rotation, const Number* translation) {
+  Transform transform;
+  if (scale) transform = Transform::scale({scale[0], scale[1], scale[2]});
+  if (rotation) transform = transform.then(rotation_of(rotation[0], rotation[1], rotation[2], rotation[3]));
+  if (translation)
+    transform = transform.then(Transform::translate({translation[0], translation[1], translation[2]}));
+  return transform;
+}
+
 Transform transform_of(const GltfDocument& document, std::size_t index) {
   const tinygltf::Node& node = document.model.nodes[index];
-  const auto check = [&](const std::vector<double>& numbers, std::size_t count, const char* name) {
+  const auto checked = [&](const std::vector<double>& numbers, std::size_t count, const char* name) {
     if (!numbers.empty() && numbers.size() != count)
       document.fail(nodes, index, fmt::format("{} has {} numbers, not {}", name, numbers.size(), count));
-    return !numbers.empty();
+    return numbers.empty() ? nullptr : numbers.data();
   };
-  if (check(node.matrix, 16, "matrix")) return matrix_of(node.matrix);
-  Transform transform;
-  if (check(node.scale, 3, "scale"))
-    transform = Transform::scale({node.scale[0], node.scale[1], node.scale[2]});
-  if (check(node.rotation, 4, "rotation"))
-    transform =
-        transform.then(rotation_of(node.rotation[0], node.rotation[1], node.rotation[2], node.rotation[3]));
-  if (check(node.translation, 3, "translation"))
-    transform =
-        transform.then(Transform::translate({node.translation[0], node.translation[1], node.translation[2]}));
-  return transform;
+  if (checked(node.matrix, 16, "matrix")) return matrix_of(node.matrix);
+  const double* scale = checked(node.scale, 3, "scale");
+  const double* rotation = checked(node.rotation, 4, "rotation");
+  return of_steps(scale, rotation, checked(node.translation, 3, "translation"));
 }
 
 /// The copies of a node's mesh, in the node's space; one where it has no instances.
@@ -70,16 +74,12 @@ std::vector<Transform> instances_of(const GltfDocument& document, std::size_t in
   const std::vector<float> translation = read("TRANSLATION", 3), rotation = read("ROTATION", 4),
                            scale = read("SCALE", 3);
   if (count == 0) return {Transform()};
-  std::vector<Transform> instances(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!scale.empty()) instances[i] = Transform::scale({scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]});
-    if (!rotation.empty())
-      instances[i] = instances[i].then(
-          rotation_of(rotation[4 * i], rotation[4 * i + 1], rotation[4 * i + 2], rotation[4 * i + 3]));
-    if (!translation.empty())
-      instances[i] = instances[i].then(
-          Transform::translate({translation[3 * i], translation[3 * i + 1], translation[3 * i + 2]}));
-  }
+  const auto at = [](const std::vector<float>& numbers, std::size_t first) {
+    return numbers.empty() ? nullptr : numbers.data() + first;
+  };
+  std::vector<Transform> instances;
+  for (std::size_t i = 0; i < count; ++i)
+    instances.push_back(of_steps(at(scale, 3 * i), at(rotation, 4 * i), at(translation, 3 * i)));
   return instances;
 }
 

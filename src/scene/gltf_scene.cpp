@@ -38,9 +38,11 @@ class GltfMaterials {
     const std::size_t place = material < 0 ? names_.size() - 1 : static_cast<std::size_t>(material);
     if (const auto replaced = options_.materials.find(names_[place]); replaced != options_.materials.end())
       return replaced->second;
-    if (!indices_[place])
-      indices_[place] =
-          builder_.add_material(make_material(document_, material, colored_.contains(material), builder_));
+    if (!indices_[place]) {
+      Material made = make_material(document_, material, colored_.contains(material), builder_);
+      made.name = names_[place];
+      indices_[place] = builder_.add_material(std::move(made));
+    }
     return *indices_[place];
   }
 
@@ -66,14 +68,12 @@ JsonNode parsed(const nlohmann::ordered_json& json, const GltfDocument& document
   return parse_json(json.dump(), document.path.string());
 }
 
-}  // namespace
-
-void add_gltf(const GltfDocument& document, const MeshOptions& options, const Transform& transform,
-              SceneBuilder& builder, std::optional<std::size_t> object) {
+void add_meshes(const GltfDocument& document, const std::vector<GltfPlaced>& meshes,
+                const MeshOptions& options, const Transform& transform, SceneBuilder& builder,
+                std::optional<std::size_t> object) {
   GltfMaterials materials(document, options, builder);
   std::vector<std::vector<Transform>> places(document.model.meshes.size());
-  for (const GltfPlaced& placed : place_nodes(document).meshes)
-    places[placed.object].push_back(placed.to_world.then(transform));
+  for (const GltfPlaced& placed : meshes) places[placed.object].push_back(placed.to_world.then(transform));
   bool has_faces = false;
   for (std::size_t m = 0; m < places.size(); ++m) {
     if (places[m].empty()) continue;
@@ -100,6 +100,13 @@ void add_gltf(const GltfDocument& document, const MeshOptions& options, const Tr
   if (!has_faces) builder.add({}, document.path, object);
 }
 
+}  // namespace
+
+void add_gltf(const GltfDocument& document, const MeshOptions& options, const Transform& transform,
+              SceneBuilder& builder, std::optional<std::size_t> object) {
+  add_meshes(document, place_nodes(document).meshes, options, transform, builder, object);
+}
+
 std::array<int, 2> size_of_aspect(double aspect, int longest) {
   const auto shorter = [longest](double share) {
     return std::max(1, static_cast<int>(std::lround(longest * share)));
@@ -109,13 +116,12 @@ std::array<int, 2> size_of_aspect(double aspect, int longest) {
   return {longest, shorter(1 / aspect)};
 }
 
-Scene scene_of_gltf(const GltfDocument& document, WarningList warnings) {
+Scene scene_of_gltf(const GltfDocument& document, const GltfNodes& nodes, WarningList warnings) {
   SceneBuilder builder;
   builder.warnings = std::move(warnings);
   builder.scene.file = document.path;
   builder.scene.name = document.path.stem().string();
-  add_gltf(document, {}, {}, builder);
-  const GltfNodes nodes = place_nodes(document);
+  add_meshes(document, nodes.meshes, {}, {}, builder, {});
   for (const GltfPlaced& light : nodes.lights)
     builder.scene.delta_lights.push_back(
         read_delta_light(parsed(light_json(document, light, builder.warnings), document)));

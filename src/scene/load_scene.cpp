@@ -31,7 +31,7 @@ Scene scene_of_mesh(const std::filesystem::path& file, const std::function<ObjFi
 Scene load_gltf(std::string_view bytes, const std::filesystem::path& file) {
   WarningList warnings;
   const GltfDocument document = parse_gltf(bytes, file, warnings);
-  return scene_of_gltf(document, std::move(warnings));
+  return scene_of_gltf(document, place_nodes(document), std::move(warnings));
 }
 
 /// A scene file is an object, maybe behind comments.

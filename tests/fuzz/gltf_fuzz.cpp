@@ -5,5 +5,5 @@
 FUZZ(bytes) {
   castray::WarningList warnings;
   const castray::GltfDocument document = castray::parse_gltf(bytes, "nowhere/o.glb", warnings);
-  castray::scene_of_gltf(document, std::move(warnings));
+  castray::scene_of_gltf(document, place_nodes(document), std::move(warnings));
 }

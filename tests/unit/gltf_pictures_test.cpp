@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "castray/render.h"
-#include "gltf_file.h"
-#include "scene/gltf_scene.h"
+#include "gltf_scene.h"
 
 using namespace castray;
 
@@ -20,9 +19,7 @@ constexpr int side = 16;
 
 /// A square picture; where nothing else gives light, the environment is black.
 Image picture(const GltfFile& file, std::uint64_t spp = 4, const Vec3d& environment = {}) {
-  WarningList warnings;
-  const GltfDocument document = parse_gltf(file.glb(), "t.glb", warnings);
-  Scene scene = scene_of_gltf(document, std::move(warnings));
+  Scene scene = read_gltf_scene(file.glb());
   scene.width = scene.height = side;
   scene.environment = environment;
   scene.default_environment = false;

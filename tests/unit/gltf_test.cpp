@@ -8,8 +8,7 @@
 
 #include "castray/error.h"
 #include "core/files.h"
-#include "gltf_file.h"
-#include "scene/gltf_scene.h"
+#include "gltf_scene.h"
 #include "temporary_folder.h"
 
 using namespace castray;
@@ -17,20 +16,6 @@ using namespace castray;
 namespace {
 
 using Json = GltfFile::Json;
-
-Scene read(const std::string& bytes, const std::string& file = "t.glb") {
-  WarningList warnings;
-  const GltfDocument document = parse_gltf(bytes, file, warnings);
-  return scene_of_gltf(document, std::move(warnings));
-}
-
-/// The scene of a file that nothing is to be said about.
-Scene read_well(const GltfFile& file) {
-  Scene scene = read(file.glb());
-  for (const SceneWarning& warning : scene.warnings) UNSCOPED_INFO(warning.text());
-  CHECK(scene.warnings.empty());
-  return scene;
-}
 
 Vec3d corner(const Scene& scene, std::size_t triangle, std::size_t i) {
   return scene.to_world(Vec3d(scene.positions[scene.triangles[triangle][i]]));
@@ -48,28 +33,13 @@ bool warns_of(const Scene& scene, const std::string& what) {
       scene.warnings, [&](const SceneWarning& w) { return w.message.find(what) != std::string::npos; });
 }
 
-const std::string two_texels = png_file(2, 8, 6, {std::string("\xff\0\0\xff\0\xff\0\x40", 8)});
-const std::string orm_texel = png_file(1, 8, 2, {std::string("\x33\x66\xcc", 3)});
-
-/// The only material of a file with one square.
-Material material_of(GltfFile& file, const Json& material, bool well = true) {
-  file.add_node({{"mesh", file.add_square(file.add("materials", material))}});
-  const Scene scene = well ? read_well(file) : read(file.glb());
-  REQUIRE(scene.materials.size() == 1);
-  return scene.materials[0];
-}
-Material material_of(const Json& material, bool well = true) {
-  GltfFile file;
-  return material_of(file, material, well);
-}
-
 }  // namespace
 
 TEST_CASE(
     "a glTF file is the same as .glb, as .gltf with a data URI, and with a buffer in a file of its own") {
   GltfFile file;
   file.add_node({{"mesh", file.add_square()}});
-  const Scene binary = read(file.glb()), text = read(file.gltf(), "t.gltf");
+  const Scene binary = read_gltf_scene(file.glb()), text = read_gltf_scene(file.gltf(), "t.gltf");
   const TemporaryFolder folder;
   write_file(folder / "a b.bin", file.bytes + "longer than the buffer");
   Json json = file.json;
@@ -112,7 +82,7 @@ TEST_CASE("triangles come from lists, strips and fans, with indices of every typ
                                                                : file.add_indices<std::uint32_t>(order);
       }
       file.add_node({{"mesh", file.add_mesh(primitive)}});
-      const Scene scene = read_well(file);
+      const Scene scene = read_gltf_well(file);
       REQUIRE(scene.triangles.size() == triangles);
       CHECK(scene.triangle_normals.empty());
       for (std::size_t t = 0; t < triangles; ++t) CHECK(is_near(normal_of(scene, t), {0, 0, 1}));
@@ -149,7 +119,7 @@ TEST_CASE("accessors may be interleaved, sparse, or of normalised whole numbers"
                                            {"COLOR_0", accessor(12, 5121, "VEC4", true)},
                                            {"TEXCOORD_0", accessor(16, 5123, "VEC2", true)}}},
                                          {"mode", 5}})}});
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   CHECK(is_near(corner(scene, 0, 0), {0, 0, 0}));
   CHECK(is_near(corner(scene, 1, 1), {1, 1, 5}));  // the sparse one
   CHECK(is_near(Vec3d(scene.colors[1]), {1, 0.2, 0}));
@@ -168,7 +138,7 @@ TEST_CASE("KHR_mesh_quantization: positions and normals of whole numbers, signed
               {{"POSITION", file.add_accessor<std::int16_t>({{-300, 0, 0}, {300, 0, 0}, {0, 300, 0}})},
                {"NORMAL", file.add_accessor<std::int8_t>({{0, 0, 127}, {0, 0, 127}, {-128, 0, 127}},
                                                          {{"normalized", true}})}}}})}});
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   CHECK(is_near(corner(scene, 0, 1), {300, 0, 0}, 1e-4));
   CHECK(is_near(Vec3d(scene.normals[2]), {-std::sqrt(0.5), 0, std::sqrt(0.5)}));
 }
@@ -183,7 +153,7 @@ TEST_CASE("nodes are moved by matrices and by scale, rotation and translation, p
                  {"scale", {2, 2, 2}},
                  {"translation", {0, 1, 0}}});
   file.add_node({{"mesh", mesh}, {"matrix", {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 5, 6, 7, 1}}});
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   REQUIRE(scene.triangles.size() == 4);
   // (-1,-1,0) + (10,0,0), doubled, a quarter turn about +y, up by 1
   CHECK(is_near(corner(scene, 0, 0), {0, -1, -18}, 1e-5));
@@ -197,7 +167,7 @@ TEST_CASE("a node that mirrors keeps the outward side outward") {
   const int mesh = file.add_square();
   file.add_node({{"mesh", mesh}, {"scale", {-1, 1, 1}}});
   file.add_node({{"mesh", mesh}, {"scale", {1, 1, -1}}, {"translation", {0, 0, 3}}});
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   CHECK(is_near(normal_of(scene, 0), {0, 0, 1}));
   CHECK(is_near(normal_of(scene, 2), {0, 0, -1}));
   for (std::size_t t = 0; t < 4; ++t)
@@ -213,7 +183,7 @@ TEST_CASE("EXT_mesh_gpu_instancing: a mesh is where each instance puts it") {
                  {"translation", {0, 0, 4}},
                  {"extensions",
                   {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", at}, {"SCALE", scale}}}}}}}});
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   REQUIRE(scene.triangles.size() == 6);
   CHECK(is_near(corner(scene, 2, 0), {8, -2, 4}, 1e-5));
   CHECK(is_near(corner(scene, 4, 0), {-1, 19, 4}, 1e-5));
@@ -229,7 +199,7 @@ TEST_CASE("the first camera is the scene's, with its width over height") {
   const int inner = file.add("nodes", {{"camera", camera}, {"translation", {0, 0, 5}}});
   file.add_node({{"children", {inner}}, {"rotation", {0, half, 0, half}}, {"scale", {2, 2, 2}}});
   file.add_orthographic(3);
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   REQUIRE(scene.has_camera);
   const Camera world = scene.to_world(scene.camera);
   CHECK(world.projection == Projection::perspective);
@@ -243,7 +213,7 @@ TEST_CASE("the first camera is the scene's, with its width over height") {
   GltfFile flat;
   flat.add_node({{"mesh", flat.add_square()}});
   flat.add_orthographic(3);
-  const Scene orthographic = read_well(flat);
+  const Scene orthographic = read_gltf_well(flat);
   CHECK(orthographic.camera.projection == Projection::orthographic);
   CHECK(orthographic.to_world(orthographic.camera).half_height == Approx(3));
 }
@@ -265,7 +235,7 @@ TEST_CASE("KHR_lights_punctual: point, spot and directional, in the file's units
   add(0, {{"translation", {1, 2, 3}}, {"scale", {7, 7, 7}}});
   add(1, {{"translation", {0, 0, 4}}});
   add(2, {{"rotation", {-half, 0, 0, half}}});
-  const Scene scene = read_well(file);
+  const Scene scene = read_gltf_well(file);
   REQUIRE(scene.delta_lights.size() == 3);
   CHECK_FALSE(scene.default_environment);
   const auto light = [&](std::size_t i) { return scene.to_world(scene.delta_lights[i]); };
@@ -281,211 +251,6 @@ TEST_CASE("KHR_lights_punctual: point, spot and directional, in the file's units
   CHECK(is_near(light(2).intensity, {3, 3, 3}));
 }
 
-TEST_CASE("metallic-roughness: factors, and channels of their image") {
-  GltfFile file;
-  const int texture = file.add_texture(orm_texel);
-  const Material m = material_of(file, {{"name", "rust"},
-                                        {"pbrMetallicRoughness",
-                                         {{"baseColorFactor", {0.5, 0.25, 0.125, 0.3}},
-                                          {"baseColorTexture", {{"index", texture}}},
-                                          {"metallicFactor", 0.9},
-                                          {"roughnessFactor", 0.8},
-                                          {"metallicRoughnessTexture", {{"index", texture}}}}}});
-  CHECK(m.name == "rust");
-  CHECK(m.type == MaterialType::principled);
-  CHECK(m.kd == Vec3d(0.5, 0.25, 0.125));
-  CHECK(m.ks.x == Approx(0.04));
-  CHECK(m.metallic == 0.9);
-  CHECK(m.alpha == Approx(0.64));
-  CHECK(m.coverage == 1);  // OPAQUE
-  CHECK_FALSE(m.map(SurfaceParameter::coverage).used());
-  CHECK(m.map(SurfaceParameter::metallic).channel == Channel::blue);
-  CHECK(m.map(SurfaceParameter::roughness).channel == Channel::green);
-  CHECK(m.map(SurfaceParameter::roughness).texture == m.map(SurfaceParameter::metallic).texture);
-  CHECK(m.map(SurfaceParameter::kd).texture != m.map(SurfaceParameter::metallic).texture);  // sRGB
-}
-
-TEST_CASE("what is no metal is a coated base; no coat, no coat") {
-  const Material plastic = material_of({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
-  CHECK(plastic.type == MaterialType::microfacet);
-  CHECK(plastic.ks.x == Approx(0.04));
-  CHECK(plastic.alpha == 1);
-  const Material chalk = material_of({{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
-                                      {"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}});
-  CHECK(chalk.type == MaterialType::diffuse);
-  const Material diamond = material_of(
-      {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
-       {"extensions",
-        {{"KHR_materials_ior", {{"ior", 2.0}}},
-         {"KHR_materials_specular", {{"specularColorFactor", {1, 0.5, 0.25}}, {"specularFactor", 0.5}}}}}});
-  CHECK(is_near(diamond.ks, Vec3d(1, 0.5, 0.25) / 18));
-  GltfFile file;
-  file.add_node({{"mesh", file.add_square()}});
-  const Material none = read_well(file).materials[0];
-  CHECK(none.name == "default");
-  CHECK(none.metallic == 1);
-  CHECK(none.alpha == 1);
-  CHECK(none.kd == Vec3d(1));
-}
-
-TEST_CASE("alpha is coverage where it is blended, a threshold where it masks, and nothing else") {
-  GltfFile blended, masked;
-  const auto with = [](GltfFile& file, const char* mode) -> Json {
-    return {{"alphaMode", mode},
-            {"alphaCutoff", 0.75},
-            {"pbrMetallicRoughness",
-             {{"baseColorFactor", {1, 1, 1, 0.5}},
-              {"baseColorTexture", {{"index", file.add_texture(two_texels)}}}}}};
-  };
-  const TextureMap blend = material_of(blended, with(blended, "BLEND")).map(SurfaceParameter::coverage);
-  CHECK(blend.channel == Channel::alpha);
-  CHECK(blend.gain == 0.5f);
-  CHECK(blend.base == 0);
-  const TextureMap mask = material_of(masked, with(masked, "MASK")).map(SurfaceParameter::coverage);
-  CHECK(mask.base + mask.gain * 1.5f == 1);                        // alpha 0.75
-  CHECK(mask.base + mask.gain * (1.5f - 2 / 256.f) == Approx(0));  // one step of 8 bits less
-  const auto coverage = [](const char* mode, double alpha) {
-    return material_of(
-               {{"alphaMode", mode}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, alpha}}}}})
-        .coverage;
-  };
-  CHECK(coverage("OPAQUE", 0.25) == 1);
-  CHECK(coverage("BLEND", 0.25) == 0.25);
-  CHECK(coverage("MASK", 0.25) == 0);
-  CHECK(coverage("MASK", 0.5) == 1);
-}
-
-TEST_CASE("emission: factor, strength, image; on both sides where the material has two") {
-  GltfFile file;
-  const int texture = file.add_texture(two_texels);
-  const Material m =
-      material_of(file, {{"emissiveFactor", {1, 0.5, 0}},
-                         {"emissiveTexture", {{"index", texture}}},
-                         {"doubleSided", true},
-                         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 20}}}}}});
-  CHECK(m.ke == Vec3d(20, 10, 0));
-  CHECK(m.map(SurfaceParameter::ke).used());
-  CHECK(m.two_sided_emission);
-  CHECK_FALSE(material_of({{"emissiveFactor", {1, 1, 1}}}).two_sided_emission);
-}
-
-TEST_CASE("glass, clear coat, sheen, specular-glossiness and unlit") {
-  const Material glass =
-      material_of({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1, 1}}, {"roughnessFactor", 0}}},
-                   {"extensions",
-                    {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                     {"KHR_materials_volume", {{"thicknessFactor", 1}}},
-                     {"KHR_materials_ior", {{"ior", 1.33}}}}}});
-  CHECK(glass.type == MaterialType::dielectric);
-  CHECK(glass.ior == 1.33);
-  CHECK(glass.alpha == 0);
-  CHECK(glass.transmittance == Vec3d(0.5, 1, 1));
-
-  GltfFile file;
-  const int texture = file.add_texture(orm_texel);
-  const Material coat = material_of(file, {{"pbrMetallicRoughness", {{"metallicFactor", 0}}},
-                                           {"extensions",
-                                            {{"KHR_materials_clearcoat",
-                                              {{"clearcoatFactor", 0.75},
-                                               {"clearcoatRoughnessFactor", 0.5},
-                                               {"clearcoatRoughnessTexture", {{"index", texture}}}}}}}});
-  CHECK(coat.type == MaterialType::principled);
-  CHECK(coat.clearcoat == 0.75);
-  CHECK(coat.clearcoat_roughness == 0.5);
-  CHECK(coat.map(SurfaceParameter::clearcoat_roughness).channel == Channel::green);
-
-  const Material cloth = material_of(
-      {{"extensions", {{"KHR_materials_sheen", {{"sheenColorFactor", {0.5, 0.5, 0.5}}}}}}}, false);
-  CHECK(cloth.sheen == Approx(0.5));
-
-  GltfFile old;
-  const int gloss = old.add_texture(two_texels);
-  const Material m = material_of(old, {{"extensions",
-                                        {{"KHR_materials_pbrSpecularGlossiness",
-                                          {{"diffuseFactor", {0.5, 0.5, 0.5, 1}},
-                                           {"specularFactor", {0.25, 0.25, 0.25}},
-                                           {"glossinessFactor", 0.5},
-                                           {"specularGlossinessTexture", {{"index", gloss}}}}}}}});
-  CHECK(m.type == MaterialType::microfacet);
-  CHECK(m.kd == Vec3d(0.5));
-  CHECK(m.ks == Vec3d(0.25));
-  CHECK(m.map(SurfaceParameter::ks).used());
-  const TextureMap& rough = m.map(SurfaceParameter::roughness);
-  CHECK(rough.channel == Channel::alpha);
-  CHECK(rough.base + rough.gain == 0.5f);  // alpha 1
-
-  const Material pane =
-      material_of({{"pbrMetallicRoughness", {{"roughnessFactor", 0}}},
-                   {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 1}}}}}});
-  CHECK(pane.type == MaterialType::conductor);
-  CHECK(pane.coverage == Approx(0.08 / 1.04));
-  CHECK(pane.reflectance.x == Approx(1));
-
-  const Material unlit = material_of({{"pbrMetallicRoughness", {{"baseColorFactor", {0.25, 0.5, 1, 1}}}},
-                                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}},
-                                     false);
-  CHECK(unlit.ke == Vec3d(0.25, 0.5, 1));
-  CHECK(unlit.kd == Vec3d());
-  CHECK(unlit.two_sided_emission);
-}
-
-TEST_CASE("KHR_texture_transform: scale and offset are the map's, a turn is the mesh's") {
-  const auto with = [](GltfFile& file, const Json& transform) -> Json {
-    return {{"pbrMetallicRoughness",
-             {{"baseColorTexture",
-               {{"index", file.add_texture(two_texels)},
-                {"extensions", {{"KHR_texture_transform", transform}}}}}}}};
-  };
-  GltfFile file;
-  const Material m = material_of(file, with(file, {{"scale", {2, 4}}, {"offset", {0.25, 0.5}}}));
-  const TextureMap& map = m.map(SurfaceParameter::kd);
-  CHECK(map.scale == std::array<float, 2>{2, 4});
-  // v of glTF, 0 at the top: 4 v + 0.5 = 1 - (4 (1 - v) + offset)
-  CHECK(map.offset == std::array<float, 2>{0.25f, 1 - 4 - 0.5f});
-
-  GltfFile turned;
-  turned.add_node({{"mesh", turned.add_square(turned.add(
-                                "materials", with(turned, {{"rotation", std::numbers::pi / 2}})))}});
-  const Scene scene = read_well(turned);
-  CHECK(scene.materials[0].map(SurfaceParameter::kd).scale == std::array<float, 2>{1, 1});
-  // The lower left corner, (0,1) in the file, is (1,0) there after a quarter turn: the upper right one.
-  CHECK(scene.uvs[0][0] == Approx(1).margin(1e-6));
-  CHECK(scene.uvs[0][1] == Approx(1).margin(1e-6));
-}
-
-TEST_CASE("normal maps have a strength; images may use the second texture coordinates") {
-  GltfFile file;
-  const int texture = file.add_texture(orm_texel);
-  Json primitive = file.square(
-      file.add("materials", {{"normalTexture", {{"index", texture}, {"scale", 0.5}, {"texCoord", 1}}}}));
-  primitive["attributes"]["TEXCOORD_1"] = file.add_accessor<float>({{5, 0}, {6, 0}, {6, 1}, {5, 1}});
-  file.add_node({{"mesh", file.add_mesh(primitive)}});
-  const Scene scene = read_well(file);
-  CHECK(scene.materials[0].map(SurfaceParameter::normal).gain == 0.5f);
-  CHECK(scene.uvs[0][0] == 5);
-}
-
-TEST_CASE("images are in the buffer, in data URIs, or in files with escaped names") {
-  for (const char* uri : {"my%20image.png", "data"}) {
-    const TemporaryFolder folder;
-    write_file(folder / "my image.png", two_texels);
-    GltfFile file;
-    const int image =
-        file.add("images",
-                 {{"uri", uri == std::string("data") ? "data:image/png;base64," + base64(two_texels) : uri}});
-    const int texture = file.add("textures", {{"source", image}});
-    const int material =
-        file.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}}}}}});
-    file.add_node({{"mesh", file.add_square(material)}});
-    write_file(folder / "t.gltf", file.gltf());
-    const Scene scene = load_scene(folder / "t.gltf");
-    CHECK(scene.warnings.empty());
-    REQUIRE(scene.textures.size() == 1);
-    CHECK(scene.textures[0].width == 2);
-    CHECK(scene.textures[0].bytes.size() == 8);
-  }
-}
-
 TEST_CASE("what is odd is told once and left out") {
   GltfFile file;
   const int missing = file.add("textures", {{"source", file.add("images", {{"uri", "nowhere.png"}})}});
@@ -499,7 +264,7 @@ TEST_CASE("what is odd is told once and left out") {
   file.json["meshes"][0]["primitives"].push_back({{"mode", 1}, {"attributes", {{"POSITION", 0}}}});
   file.add_node({{"mesh", mesh}});
   file.add_node({{"mesh", mesh}, {"translation", {0, 0, 1}}});
-  const Scene scene = read(file.glb());
+  const Scene scene = read_gltf_scene(file.glb());
   CHECK(scene.triangles.size() == 4);
   CHECK(warns_of(scene, "no such file: nowhere.png"));
   CHECK(warns_of(scene, "materials[0]: an image is left out: "));
