@@ -6,8 +6,8 @@
 #include <atomic>
 
 #include "core/threads.h"
+#include "passes/camera_hits.h"
 #include "passes/cryptomatte.h"
-#include "passes/first_hits.h"
 #include "plan/job.h"
 
 namespace castray {
@@ -60,7 +60,7 @@ class SurfacePasses {
         window_(window_of(scene.width, scene.height, options)),
         samples_(std::min(options.spp, most_pass_samples)),
         pixels_(pixels_of(window_)),
-        hits_(scene, options, threads, set.has(Pass::denoising)),
+        hits_(scene, options, window_, threads, set.has(Pass::denoising)),
         albedo_(set.has(Pass::albedo), passes_, "albedo", "RGB", true, pixels_),
         normal_(set.has(Pass::normal), passes_, "N", "XYZ", true, pixels_),
         position_(set.has(Pass::position), passes_, "P", "XYZ", false, pixels_),
@@ -127,7 +127,7 @@ class SurfacePasses {
   Window window_;
   std::uint64_t samples_;
   std::size_t pixels_;
-  FirstHits hits_;
+  CameraHits hits_;
   Passes passes_;
   VectorPass albedo_, normal_, position_, behind_albedo_, behind_normal_;
   std::vector<float> depth_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "castray/film.h"
 #include "castray/render_options.h"
 #include "castray/scene.h"
 #include "geometry/bvh.h"
@@ -29,10 +30,11 @@ struct FirstHit {
 };
 
 /// Finds what camera samples see. The scene must outlive it.
-class FirstHits {
+class CameraHits {
  public:
   /// `behind_mirrors`: whether mirrors and smooth glass are followed, too.
-  FirstHits(const Scene& scene, const RenderOptions& options, int threads, bool behind_mirrors);
+  CameraHits(const Scene& scene, const RenderOptions& options, const Window& window, int threads,
+             bool behind_mirrors);
 
   /// Of sample `sample` of pixel (x,y) of the full image: castRay's camera ray. Called by several threads.
   FirstHit at(int x, int y, std::uint64_t sample) const;

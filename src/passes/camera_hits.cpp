@@ -1,4 +1,4 @@
-#include "passes/first_hits.h"
+#include "passes/camera_hits.h"
 
 #include "core/sequences.h"
 #include "reference/camera_sample.h"
@@ -22,11 +22,12 @@ Vec3f albedo_of(const Material& m, const SurfaceValues<float>& values) {
 
 }  // namespace
 
-FirstHits::FirstHits(const Scene& scene, const RenderOptions& options, int threads, bool behind_mirrors)
+CameraHits::CameraHits(const Scene& scene, const RenderOptions& options, const Window& window, int threads,
+                       bool behind_mirrors)
     : scene_(scene),
       options_(options),
-      width_(options.width > 0 ? options.width : scene.width),
-      height_(options.width > 0 ? options.height : scene.height),
+      width_(window.full_width),
+      height_(window.full_height),
       follows_(behind_mirrors),
       bvh_(Bvh::build(mesh_of(scene), threads)),
       surfaces_(scene),
@@ -34,7 +35,7 @@ FirstHits::FirstHits(const Scene& scene, const RenderOptions& options, int threa
   for (const Material& m : scene.materials) albedos_.push_back(albedo_of(m, SurfaceValues<float>(m)));
 }
 
-FirstHit FirstHits::at(int x, int y, std::uint64_t sample) const {
+FirstHit CameraHits::at(int x, int y, std::uint64_t sample) const {
   const std::uint32_t key = pixel_key(x, y, options_.seed);
   const auto draw = [&](std::uint32_t block) { return sample_block(options_.sampler, key, sample, block); };
   const Camera& camera = options_.camera ? *options_.camera : scene_.camera;
@@ -54,18 +55,18 @@ FirstHit FirstHits::at(int x, int y, std::uint64_t sample) const {
   return first;
 }
 
-Vec3f FirstHits::albedo(const Surface<float>& x, const Hit<float>& hit) const {
+Vec3f CameraHits::albedo(const Surface<float>& x, const Hit<float>& hit) const {
   const Material& m = scene_.materials[x.material];
   if (!m.has_maps_of_values() && !m.vertex_colors) return albedos_[x.material];
   return albedo_of(m, surface_values(scene_, m, TrianglePlace<float>{hit.triangle, hit.b1, hit.b2}));
 }
 
 /// The normal is on the viewer's side.
-Appearance FirstHits::appearance(const Surface<float>& x, const Hit<float>& hit) const {
+Appearance CameraHits::appearance(const Surface<float>& x, const Hit<float>& hit) const {
   return {albedo(x, hit), flip_with(x.wo, x.frame.normal)};
 }
 
-Appearance FirstHits::behind_mirrors(Surface<float> x, Hit<float> hit, const Path& path) const {
+Appearance CameraHits::behind_mirrors(Surface<float> x, Hit<float> hit, const Path& path) const {
   Vec3f tint(1);
   for (std::uint32_t vertex = 0; is_mirror(scene_.materials[x.material]); ++vertex) {
     const auto draw = [&](std::uint32_t block) {
