@@ -90,7 +90,7 @@ class ExrWriter final : public RowWriter {
              window);
     std::vector<std::vector<half>> halves_of_passes;
     for (const ImageChannel& channel : passes_.channels) {
-      if (is_half(channel)) {
+      if (is_half(channel, bits16_)) {
         halves_of_passes.push_back(halves_of(channel, rows.width, y_, y_ + rows.height));
         frame.insert(channel.name, exr_slice(halves_of_passes.back().data(), 1, rows.width, window));
       } else {
@@ -113,14 +113,14 @@ class ExrWriter final : public RowWriter {
       header.insert(exr_freedom, Imf::FloatAttribute(static_cast<float>(noise->freedom)));
     }
     for (const ImageChannel& channel : image.passes.channels)
-      header.channels().insert(
-          channel.name, Imf::Channel(image.display.bits16 && channel.may_be_half ? Imf::HALF : Imf::FLOAT));
+      header.channels().insert(channel.name,
+                               Imf::Channel(is_half(channel, image.display.bits16) ? Imf::HALF : Imf::FLOAT));
     add_metadata(header, image.metadata);
     add_metadata(header, image.passes.metadata);
     return header;
   }
 
-  bool is_half(const ImageChannel& channel) const { return bits16_ && channel.may_be_half; }
+  static bool is_half(const ImageChannel& channel, bool bits16) { return bits16 && channel.may_be_half; }
 
   const std::optional<Noise>& noise_;
   const Passes& passes_;
