@@ -146,7 +146,9 @@ void print_scene_info(const std::string& file, const CommonFlags& common) {
 Run add_info(Arguments& arguments, const CommonFlags& common) {
   const auto files = std::make_shared<std::vector<std::string>>();
   arguments
-      .add_positional("FILE", *files, "scenes .json, .gltf, .glb, .obj or .ply, - for one on the standard input; images; films")
+      .add_positional(
+          "FILE", *files,
+          "scenes .json, .gltf, .glb, .obj or .ply, - for one on the standard input; images; films")
       .required();
   return [files, &common] {
     for (const std::string& file : *files) {

@@ -24,7 +24,9 @@ void declare_flag(Arguments& arguments, const RenderFlag& flag, std::vector<Give
 }
 
 void declare_flags(Arguments& arguments, RenderCommand& command) {
-  arguments.add_positional("SCENE", command.scene, "scene .json, .gltf, .glb, .obj or .ply; - is a scene on the standard input")
+  arguments
+      .add_positional("SCENE", command.scene,
+                      "scene .json, .gltf, .glb, .obj or .ply; - is a scene on the standard input")
       .required();
   for (const RenderFlag& flag : render_flags()) declare_flag(arguments, flag, command.given);
   arguments

@@ -86,8 +86,10 @@ void RenderReport::print_scene(bool verbose) const {
              scene.file.string(), scene.triangles.size(), scene.lights.size(), scene.materials.size(),
              load_seconds);
   if (!scene.instances.empty() || scene.expanded_instances > 0)
-    fmt::print(stderr, "castray: {} instances of {} objects show {} triangles; {} became meshes of their own\n",
-               scene.instances.size(), scene.shared_meshes.size(), scene.shown_triangles(), scene.expanded_instances);
+    fmt::print(stderr,
+               "castray: {} instances of {} objects show {} triangles; {} became meshes of their own\n",
+               scene.instances.size(), scene.shared_meshes.size(), scene.shown_triangles(),
+               scene.expanded_instances);
   for (const std::string& key : scene.ignored_keys) fmt::print(stderr, "castray: ignored: {}\n", key);
 }
 

@@ -17,8 +17,8 @@ constexpr std::uint64_t small_tree = 1 << 20;  ///< triangles
 constexpr TreeBytes small_fast_tree{130, 58}, fast_tree{80, 58}, cut_tree{440, 175}, reference_tree{180, 58};
 constexpr std::uint64_t bytes_of_any_tree = 2 << 20;
 constexpr std::uint64_t bytes_of_instance = 400;  ///< matrices, references, and nodes over it
-constexpr std::uint64_t bytes_of_facet = 650;  ///< of a list, while pairs of triangles are found
-constexpr std::uint64_t bytes_of_light = 700;  ///< of an emitting triangle: facet, light, light tree
+constexpr std::uint64_t bytes_of_facet = 650;     ///< of a list, while pairs of triangles are found
+constexpr std::uint64_t bytes_of_light = 700;     ///< of an emitting triangle: facet, light, light tree
 constexpr std::uint64_t bytes_of_reference_light = 130;  ///< likewise
 constexpr std::uint64_t bytes_of_texel = 16;             ///< of the environment: radiance and probability
 constexpr std::uint64_t bytes_of_any_scene = 2 << 20;
@@ -45,7 +45,8 @@ std::uint64_t bytes_to_prepare(const Scene& scene, const Plan& plan, Integrator 
   if (plan.list) return always + triangles * bytes_of_facet + lights;
   const TreeBytes tree = tree_bytes(plan, triangles, reference);
   const std::uint64_t instances = scene.instances.size() * bytes_of_instance;
-  return always + bytes_of_any_tree + instances + std::max(triangles * tree.most, triangles * tree.kept + lights);
+  return always + bytes_of_any_tree + instances +
+         std::max(triangles * tree.most, triangles * tree.kept + lights);
 }
 
 }  // namespace castray

@@ -62,7 +62,8 @@ inline void make_instance(Scene& scene, std::uint32_t first, std::uint32_t count
     }
     if (mirrors) std::swap(normals[1], normals[2]);
   }
-  SceneInstance instance{static_cast<std::uint32_t>(scene.shared_meshes.size()), {}, Vec3f(place.point(middle))};
+  SceneInstance instance{
+      static_cast<std::uint32_t>(scene.shared_meshes.size()), {}, Vec3f(place.point(middle))};
   for (int i = 0; i < 3; ++i) instance.rows[i] = Vec3f(place.rows[i] * unit);
   scene.shared_meshes.push_back({first, count});
   scene.instances.push_back(instance);
