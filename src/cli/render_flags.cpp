@@ -304,11 +304,6 @@ void apply_flags(const RenderRequest& request, Scene& scene) {
   const SceneFlags& flags = request.scene;
   if (flags.strict && !scene.warnings.empty())
     throw InputError(scene.warnings.front().place, scene.warnings.front().message);
-  if (!request.passes.empty() && !scene.instances.empty())
-    throw InputError(
-        "--passes: of a scene whose instances share triangles there are none; add \"instancing\": "
-        "\"expand\" to " +
-        scene.file.string());
   if (request.options.width > 0) scene.width = request.options.width, scene.height = request.options.height;
   scene.camera = camera_of(flags.camera, scene);
   if (flags.environment) {

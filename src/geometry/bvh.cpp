@@ -5,8 +5,8 @@
 #include <chrono>
 
 #include "geometry/bvh_build.h"
-#include "geometry/slab.h"
 #include "geometry/triangle.h"
+#include "geometry/visit_leaves.h"
 
 namespace castray {
 
@@ -35,46 +35,14 @@ template <bool any, class T>
 Hit<T> Bvh::traverse(const Ray<T>& ray, const HitFilter<T>& counts) const {
   Hit<T> hit;
   if (mesh_.count == 0 || !is_traceable(ray)) return hit;
-  const BvhNode& root = tree_.root;
   const TriangleTest<T> test(ray);
-  const SlabTest<T> slab(ray, test.main_axis(), {root.lower[0], root.lower[1], root.lower[2]},
-                         {root.upper[0], root.upper[1], root.upper[2]});
-  T nearest = ray.t_max;
-  const auto enters = [&](const BvhNode& node, T& t) {
-    return slab.intersect(node.lower, node.upper, nearest, t);
-  };
-
-  // What is still to be visited: at most one sibling for each level above the current node.
-  struct Entry {
-    const BvhNode* node;
-    T t;
-  };
-  Entry stack[max_bvh_depth];
-  Entry* top = stack;
-
-  T t_root;
-  const BvhNode* node = enters(root, t_root) ? &root : nullptr;
-  while (node) {
-    if (node->is_leaf()) {
-      for (std::uint32_t i = 0; i < node->count; ++i) {
-        intersect_triangle(test, mesh_, tree_.primitives[node->first + i], ray.t_max, counts, hit);
-        if (any && hit.found()) return hit;
-      }
-      if (hit.found()) nearest = hit.t;
-      node = nullptr;
-    } else {
-      const BvhPair& pair = tree_.pairs[node->first];
-      T t0, t1;
-      const bool in0 = enters(pair.child[0], t0), in1 = enters(pair.child[1], t1);
-      const int first = in0 && !(in1 && t1 < t0) ? 0 : 1;
-      node = in0 || in1 ? &pair.child[first] : nullptr;
-      if (in0 && in1) *top++ = {&pair.child[1 - first], first == 0 ? t1 : t0};
+  visit_leaves(tree_, slab_test(ray, test.main_axis(), tree_), ray.t_max, [&](const BvhNode& leaf) {
+    for (std::uint32_t i = 0; i < leaf.count; ++i) {
+      intersect_triangle(test, mesh_, tree_.primitives[leaf.first + i], ray.t_max, counts, hit);
+      if (any && hit.found()) return T(-1);
     }
-    while (!node && top != stack) {
-      --top;
-      if (top->t <= nearest) node = top->node;
-    }
-  }
+    return hit.found() ? hit.t : ray.t_max;
+  });
   return hit;
 }
 

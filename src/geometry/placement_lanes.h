@@ -8,7 +8,7 @@ namespace castray::CASTRAY_ISA {
 
 /// Triangles are in scene space already.
 struct InPlace {
-  CASTRAY_INLINE Vec normal(const Vec& n) const { return n; }
+  CASTRAY_INLINE Vec vertex_normal(const Vec& n) const { return n; }
   CASTRAY_INLINE Vec direction(const Vec& v) const { return v; }
   CASTRAY_INLINE Float handedness(Float h) const { return h; }
 };
@@ -22,6 +22,8 @@ struct Placed {
     const auto& rows = instance.to_object;
     return fma(rows[0], n.x, fma(rows[1], n.y, rows[2] * n.z));
   }
+  /// Normalised, as those of meshes in scene space are before they are interpolated.
+  CASTRAY_INLINE Vec vertex_normal(const Vec& n) const { return normalize(normal(n)); }
   CASTRAY_INLINE Vec direction(const Vec& v) const { return InstanceLanes::product(instance.to_scene, v); }
   /// The sign of a product of three directions.
   CASTRAY_INLINE Float handedness(Float h) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/placement.h"
 #include "materials/surface_values.h"
 
 namespace castray {
@@ -12,12 +13,13 @@ struct UvDerivatives {
 };
 
 /// None where the triangle has no texture coordinates, or all three in one line.
-template <class T>
-std::optional<UvDerivatives<T>> uv_derivatives(const Scene& scene, std::uint32_t triangle) {
+template <class T, class Placement>
+std::optional<UvDerivatives<T>> uv_derivatives(const Scene& scene, std::uint32_t triangle,
+                                               const Placement& placement) {
   if (scene.triangle_uvs.empty() || scene.triangle_uvs[triangle][0] == Scene::no_index) return {};
   const Index3 &p = scene.triangles[triangle], &t = scene.triangle_uvs[triangle];
   const auto edge = [&](std::size_t i) {
-    return Vec3<T>(scene.positions[p[i]]) - Vec3<T>(scene.positions[p[0]]);
+    return placement.direction(Vec3<T>(scene.positions[p[i]]) - Vec3<T>(scene.positions[p[0]]));
   };
   const auto change = [&](std::size_t i, std::size_t axis) {
     return T(scene.uvs[t[i]][axis]) - T(scene.uvs[t[0]][axis]);
@@ -27,18 +29,19 @@ std::optional<UvDerivatives<T>> uv_derivatives(const Scene& scene, std::uint32_t
   const Vec3<T> du = (edge(1) * change(2, 1) - edge(2) * change(1, 1)) / determinant;
   const Vec3<T> dv = (edge(2) * change(1, 0) - edge(1) * change(2, 0)) / determinant;
   if (!is_finite(du) || !is_finite(dv)) return {};
-  return UvDerivatives<T>{du, dv, std::copysign(T(1), determinant)};
+  return UvDerivatives<T>{du, dv, std::copysign(T(1), determinant) * T(placement.handedness())};
 }
 
 /// The shading normal `n`, on the geometric normal's side, as the material's normal and bump maps bend it.
 ///
 /// A normal map holds (1 + m) / 2, m in the frame of n, the direction in which u grows and, across it, the
 /// one in which v grows. A bump map is a height h along n (Blinn 1978): the normal is that of p + h n.
-template <class T>
-Vec3<T> bent_normal(const Scene& scene, const Material& m, const TrianglePlace<T>& place, Vec3<T> n) {
+template <class T, class Placement>
+Vec3<T> bent_normal(const Scene& scene, const Material& m, const TrianglePlace<T>& place,
+                    const Placement& placement, Vec3<T> n) {
   const TextureMap &normals = m.map(SurfaceParameter::normal), &bump = m.map(SurfaceParameter::bump);
   if (!normals.used() && !bump.used()) return n;
-  const auto derivatives = uv_derivatives<T>(scene, place.triangle);
+  const auto derivatives = uv_derivatives<T>(scene, place.triangle, placement);
   const auto uv = uv_at(scene, place);
   if (!derivatives || !uv) return n;
   const auto [u, v] = *uv;

@@ -31,7 +31,9 @@ HitFilter<T> Coverage::world_of(std::uint32_t key, std::uint64_t sample) const {
   const std::uint32_t low = hash_combine(key, static_cast<std::uint32_t>(sample));
   const std::uint32_t world = hash_combine(low, static_cast<std::uint32_t>(sample >> 32));
   return [this, world](const Hit<T>& hit) {
-    return !is_partial(hit.triangle) || is_there(world, hit.triangle, hit.b1, hit.b2);
+    if (!is_partial(hit.triangle)) return true;
+    const bool in_scene = hit.instance == Scene::no_index;
+    return is_there(in_scene ? world : hash_combine(world, hit.instance), hit.triangle, hit.b1, hit.b2);
   };
 }
 

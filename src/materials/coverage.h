@@ -31,7 +31,7 @@ class Coverage {
   bool is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2) const;
 
   /// Which hits count for the path of this sample of the pixel with this key: each path has a world of its
-  /// own. The filter must not outlive this.
+  /// own, and in it each instance. The filter must not outlive this.
   template <class T>
   HitFilter<T> world_of(std::uint32_t key, std::uint64_t sample) const;
 

@@ -15,10 +15,12 @@ CASTRAY_INLINE Vec smooth_normal(const TriangleTable& table, const Placement& pl
   if (!table.normal_corners) return facing;
   Corners corners = corners_of(table.normal_corners, at.triangle);
   const Mask none = corners.a == Uint(no_corner);
-  const auto normal = [&](Uint i) { return gather_vec(table.normals, select(none, Uint(0u), i) * 3u); };
+  const auto normal = [&](Uint i) {
+    return placement.vertex_normal(gather_vec(table.normals, select(none, Uint(0u), i) * 3u));
+  };
   Vec n = normal(corners.a) * (Float(1.f) - at.b1 - at.b2) + normal(corners.b) * at.b1 +
           normal(corners.c) * at.b2;
-  n = normalize(placement.normal(n));
+  n = normalize(n);
   n = select(dot(n, facing) < Float(0.f), -n, n);
   const Mask usable = ~none & (dot(n, to_viewer) > Float(0.f)) & (length_squared(n) > Float(0.f));
   return select(usable, n, facing);

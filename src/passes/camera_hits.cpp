@@ -29,7 +29,7 @@ CameraHits::CameraHits(const Scene& scene, const RenderOptions& options, const W
       width_(window.full_width),
       height_(window.full_height),
       follows_(behind_mirrors),
-      bvh_(Bvh::build(mesh_of(scene), threads)),
+      bvh_(SceneBvh::build(scene, threads)),
       surfaces_(scene),
       coverage_(scene) {
   for (const Material& m : scene.materials) albedos_.push_back(albedo_of(m, SurfaceValues<float>(m)));

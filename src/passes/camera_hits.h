@@ -6,7 +6,7 @@
 #include "castray/film.h"
 #include "castray/render_options.h"
 #include "castray/scene.h"
-#include "geometry/bvh.h"
+#include "geometry/scene_bvh.h"
 #include "materials/coverage.h"
 #include "reference/segments.h"
 #include "reference/surface.h"
@@ -54,7 +54,7 @@ class CameraHits {
   RenderOptions options_;
   int width_, height_;
   bool follows_;
-  Bvh bvh_;
+  SceneBvh bvh_;
   Surfaces<float> surfaces_;
   Coverage coverage_;
   Segments<float> segments_;

@@ -4,9 +4,9 @@
 
 #include "castray/error.h"
 #include "core/contract.h"
-#include "geometry/bvh.h"
 #include "geometry/flat_slab_list.h"
 #include "geometry/list.h"
+#include "geometry/scene_bvh.h"
 #include "reference/cast_ray.h"
 #include "reference/faults.h"
 
@@ -17,7 +17,17 @@ namespace {
 /// The scene in the file's own coordinates, rounded to float: what a path tracer without re-centring works
 /// on.
 Scene in_file_coordinates(Scene scene) {
-  for (Vec3f& p : scene.positions) p = Vec3f(scene.to_world(Vec3d(p)));
+  std::vector<bool> moved(scene.positions.size());
+  for (std::uint32_t t = 0; t < scene.own_triangles(); ++t)
+    for (const std::uint32_t corner : scene.triangles[t])
+      if (!moved[corner]) {
+        scene.positions[corner] = Vec3f(scene.to_world(Vec3d(scene.positions[corner])));
+        moved[corner] = true;
+      }
+  for (SceneInstance& instance : scene.instances) {
+    for (Vec3f& row : instance.rows) row *= static_cast<float>(scene.unit);
+    instance.translation = Vec3f(scene.to_world(Vec3d(instance.translation)));
+  }
   scene.camera = scene.to_world(scene.camera);
   for (DeltaLight& light : scene.delta_lights) light = scene.to_world(light);
   scene.center = {};
@@ -66,7 +76,7 @@ class Reference final : public PreparedIntegrator {
   void describe(const TriangleList&, RenderStats& stats) const {
     stats.accel_summary = fmt::format("list: {} triangles", scene_->triangles.size());
   }
-  void describe(const Bvh& bvh, RenderStats& stats) const {
+  void describe(const SceneBvh& bvh, RenderStats& stats) const {
     stats.bvh_seconds = bvh.stats().seconds;
     stats.accel_summary = to_string(bvh.stats());
   }
@@ -83,18 +93,19 @@ std::unique_ptr<const PreparedIntegrator> prepare(std::shared_ptr<const Scene> s
   if (job.fault == Fault::vanishing_boxes)
     return std::make_unique<Reference<T, FlatSlabList<T>>>(std::move(scene), FlatSlabList<T>(mesh));
   const AccelKind accel = job.options.accel;
-  if (accel == AccelKind::list || (accel == AccelKind::automatic && mesh.count <= longest_list))
+  const bool list = accel == AccelKind::list || (accel == AccelKind::automatic && mesh.count <= longest_list);
+  if (list && scene->instances.empty())
     return std::make_unique<Reference<T, TriangleList>>(std::move(scene), TriangleList(mesh));
-  return std::make_unique<Reference<T, Bvh>>(std::move(scene), Bvh::build(mesh, job.threads));
+  SceneBvh bvh = SceneBvh::build(*scene, job.threads);
+  return std::make_unique<Reference<T, SceneBvh>>(std::move(scene), std::move(bvh));
 }
 
 }  // namespace
 
 std::unique_ptr<const PreparedIntegrator> prepare_reference(const Scene& scene, const Job& job) {
-  if (!scene.instances.empty())
-    throw InputError(
-        scene.file.string() +
-        ": the reference integrator knows no instances; add \"instancing\": \"expand\" to the scene");
+  if (job.fault == Fault::vanishing_boxes && !scene.instances.empty())
+    throw InputError(scene.file.string() +
+                     ": this fault is of a list, which knows no instances; add \"instancing\": \"expand\"");
   const bool classic = job.options.epsilon && (scene.unit != 1 || scene.center != Vec3d());
   const auto traced = classic ? std::make_shared<const Scene>(in_file_coordinates(scene))
                               : std::shared_ptr<const Scene>(std::shared_ptr<void>(), &scene);

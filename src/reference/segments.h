@@ -11,7 +11,7 @@ namespace castray {
 /// The error bound of a surface point as the far end of `segment`: its triangle is tested from the other end.
 template <class T>
 Vec3<T> far_error(const Surface<T>& x, const Vec3<T>& segment) {
-  return x.error + error_of_test(max_component(magnitude(segment)));
+  return x.error + error_of_test(x.test_growth * max_component(magnitude(segment)));
 }
 
 /// Ray-origin offsets and visibility: by the hits' error bounds or, for comparison, by the classic absolute

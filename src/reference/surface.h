@@ -4,7 +4,7 @@
 
 #include "core/error_bounds.h"
 #include "core/frame.h"
-#include "geometry/ray.h"
+#include "geometry/placement.h"
 #include "materials/bent_normal.h"
 #include "materials/material_table.h"
 #include "materials/surface_values.h"
@@ -15,6 +15,7 @@ namespace castray {
 template <class T>
 struct Surface {
   Vec3<T> p, error;   ///< the point and a bound of its rounding error per coordinate
+  T test_growth;      ///< Placed::growth
   Vec3<T> normal;     ///< geometric, unit, as the triangle's winding has it
   Vec3<T> to_viewer;  ///< unit, against the ray
   Frame<T> frame;     ///< of the shading normal
@@ -46,18 +47,26 @@ class Surfaces {
 
   /// The surface that `ray`, of unit direction, meets at `hit`.
   Surface<T> at(const Hit<T>& hit, const Ray<T>& ray) const {
+    return hit.instance == Scene::no_index ? at(hit, ray, InPlace())
+                                           : at(hit, ray, Placed(scene_.instances[hit.instance]));
+  }
+
+ private:
+  template <class Placement>
+  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, const Placement& placement) const {
     const Index3& t = scene_.triangles[hit.triangle];
     const TrianglePoint<T> point =
-        point_on_triangle(Vec3<T>(scene_.positions[t[0]]), Vec3<T>(scene_.positions[t[1]]),
-                          Vec3<T>(scene_.positions[t[2]]), hit.b1, hit.b2);
+        placement.point(point_on_triangle(Vec3<T>(scene_.positions[t[0]]), Vec3<T>(scene_.positions[t[1]]),
+                                          Vec3<T>(scene_.positions[t[2]]), hit.b1, hit.b2));
     const std::uint16_t material = scene_.triangle_material[hit.triangle];
-    const Vec3<T>& normal = normals_[hit.triangle];
+    const Vec3<T> normal = placement.normal(normals_[hit.triangle]);
     const Vec3<T> to_viewer = -ray.direction;
     const Material& m = scene_.materials[material];
     const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
-    const Frame<T> frame = make_frame(shading_normal(m, place, normal, to_viewer));
+    const Frame<T> frame = make_frame(shading_normal(m, place, placement, normal, to_viewer));
     Surface<T> surface{point.p,
                        point.error,
+                       T(placement.growth()),
                        normal,
                        to_viewer,
                        frame,
@@ -74,26 +83,27 @@ class Surfaces {
     return surface;
   }
 
- private:
   /// The interpolated vertex normal, on the geometric normal's side; the geometric one where there is none or
   /// where the viewer would be behind it.
-  Vec3<T> smooth_normal(const TrianglePlace<T>& place, const Vec3<T>& normal,
+  template <class Placement>
+  Vec3<T> smooth_normal(const TrianglePlace<T>& place, const Placement& placement, const Vec3<T>& normal,
                         const Vec3<T>& to_viewer) const {
     if (scene_.triangle_normals.empty()) return normal;
     const Index3& n = scene_.triangle_normals[place.triangle];
     if (n[0] == Scene::no_index) return normal;
-    Vec3<T> smooth = normalize(place.interpolate(Vec3<T>(scene_.normals[n[0]]), Vec3<T>(scene_.normals[n[1]]),
-                                                 Vec3<T>(scene_.normals[n[2]])));
+    const auto at_corner = [&](std::size_t i) { return placement.normal(Vec3<T>(scene_.normals[n[i]])); };
+    Vec3<T> smooth = normalize(place.interpolate(at_corner(0), at_corner(1), at_corner(2)));
     if (!is_finite(smooth)) return normal;
     if (dot(smooth, normal) < 0) smooth = -smooth;
     return dot(smooth, to_viewer) * dot(normal, to_viewer) > 0 ? smooth : normal;
   }
 
   /// The same, bent by the material's maps where the viewer is still in front of it.
-  Vec3<T> shading_normal(const Material& m, const TrianglePlace<T>& place, const Vec3<T>& normal,
-                         const Vec3<T>& to_viewer) const {
-    const Vec3<T> smooth = smooth_normal(place, normal, to_viewer);
-    const Vec3<T> bent = bent_normal(scene_, m, place, smooth);
+  template <class Placement>
+  Vec3<T> shading_normal(const Material& m, const TrianglePlace<T>& place, const Placement& placement,
+                         const Vec3<T>& normal, const Vec3<T>& to_viewer) const {
+    const Vec3<T> smooth = smooth_normal(place, placement, normal, to_viewer);
+    const Vec3<T> bent = bent_normal(scene_, m, place, placement, smooth);
     const bool usable = dot(bent, to_viewer) * dot(normal, to_viewer) > 0 && dot(bent, normal) > 0;
     return usable ? bent : smooth;
   }

@@ -173,8 +173,9 @@ std::size_t SceneBuilder::add_object() {
   return objects_.size() - 1;
 }
 
-void SceneBuilder::place(std::size_t object, const Transform& transform) {
-  instances_.push_back({object, transform});
+void SceneBuilder::place(std::size_t object, const Transform& transform,
+                         std::optional<std::uint16_t> material) {
+  instances_.push_back({object, transform, material});
 }
 
 void SceneBuilder::add(Mesh&& mesh, const std::filesystem::path& file, std::optional<std::size_t> object) {
@@ -212,6 +213,21 @@ void SceneBuilder::expand(const Mesh& object, const Transform& transform) {
   Mesh copy = object;
   apply(transform, copy);
   add_to_scene(std::move(copy));
+}
+
+/// Copies objects once for each other material in which they are placed.
+void SceneBuilder::make_objects_of_materials() {
+  std::map<std::pair<std::size_t, std::uint16_t>, std::size_t> copies;
+  for (Placed& instance : instances_) {
+    if (!instance.material) continue;
+    const auto [copy, is_new] = copies.try_emplace({instance.object, *instance.material}, objects_.size());
+    if (is_new) {
+      Mesh mesh = objects_[instance.object];
+      mesh.triangle_material.assign(mesh.triangles.size(), *instance.material);
+      objects_.push_back(std::move(mesh));
+    }
+    instance.object = copy->second;
+  }
 }
 
 /// Makes meshes of their own of all that is better not an instance: of every one where there are few
@@ -384,6 +400,7 @@ void SceneBuilder::drop_flat() {
 }
 
 Scene SceneBuilder::finish() {
+  make_objects_of_materials();
   expand_instances();
   if (instances_.empty()) objects_.clear();
   drop_unusable(mesh_);

@@ -57,8 +57,8 @@ class SceneBuilder {
 
   /// Adds an object, which is where instances place it; returns its index.
   std::size_t add_object();
-  /// Adds an instance of an object.
-  void place(std::size_t object, const Transform& transform);
+  /// Adds an instance of an object, all of the given material if there is one.
+  void place(std::size_t object, const Transform& transform, std::optional<std::uint16_t> material = {});
 
   /// Drops degenerate triangles and fills in geometry, center, unit, lights and warnings. Throws InputError
   /// where no triangle is left.
@@ -69,12 +69,14 @@ class SceneBuilder {
   struct Placed {
     std::size_t object;
     Transform transform;
+    std::optional<std::uint16_t> material;  ///< instead of the object's
   };
 
   int add_raster(const TextureSource& source, const std::string& name, ColorSpace space,
                  TextureMeaning meaning, const std::function<Raster()>& read);
   void join(Mesh& all, Mesh&& more) const;
   void add_to_scene(Mesh&& mesh);
+  void make_objects_of_materials();
   void expand_instances();
   void expand(const Mesh& object, const Transform& transform);
   void drop_unusable(Mesh& mesh);

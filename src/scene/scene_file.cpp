@@ -207,7 +207,9 @@ class SceneFileReader {
     const JsonNode *each = reader.find("transforms"), *steps = reader.find("transform");
     const Transform all = steps ? read_transform(*steps) : Transform{};
     const std::vector<Transform> places = each ? read_transforms(*each, file_) : std::vector<Transform>(1);
-    for (const Transform& place : places) builder_.place(*found->second.index, place.then(all));
+    std::optional<std::uint16_t> material;
+    if (const JsonNode* other = reader.find("material")) material = find_material(*other);
+    for (const Transform& place : places) builder_.place(*found->second.index, place.then(all), material);
   }
 
   /// Lists the meshes of the scene itself or of an object. A file is read once, and kept until its last use.
@@ -299,7 +301,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"index", index_keys()},
         {"mesh", {"obj", "ply", "gltf", "material", "materials", "transform", "normals", "crease_angle"}},
         {"transform_step", transform_step_keys},
-        {"instance", {"object", "transform", "transforms"}},
+        {"instance", {"object", "transform", "transforms", "material"}},
     };
     for (const MaterialDescriptor* material : material_descriptors()) {
       all.push_back({material->name, {"type"}});

@@ -233,4 +233,5 @@ TEST_CASE("every kernel agrees with castRay where everything differs from point 
   in_float.precision = Precision::float32;
   in_float.seed = 7;
   expected.check("reference in float", scene, in_float);
+  expected.check("reference in float, instances", instanced, in_float);
 }

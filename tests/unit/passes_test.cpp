@@ -4,10 +4,11 @@
 #include <bit>
 #include <cmath>
 
+#include "box_scenes.h"
 #include "castray/passes.h"
+#include "instanced.h"
 #include "passes/cryptomatte.h"
 #include "passes/murmur3.h"
-#include "test_scenes.h"
 
 using namespace castray;
 using castray::test::SceneSketch;
@@ -168,6 +169,26 @@ TEST_CASE("what is only partly there covers its share, and shows what is behind 
   }
   // 4096 trials of probability 1/4: 5 standard deviations, false alarms 6e-7
   CHECK(sum / (side * side) == Approx(0.25).margin(5 * std::sqrt(0.25 * 0.75 / 4096)));
+}
+
+TEST_CASE("instances have the passes of the same surfaces in scene space") {
+  Material leaf = diffuse(gold);
+  leaf.coverage = 0;  // nothing is seen of it
+  SceneSketch sketch;
+  const std::uint16_t front = sketch.add_material(leaf), ball = sketch.add_material(diffuse(grey));
+  sketch.add_quad({1, -1, .1f}, {-1, -1, .1f}, {-1, 1, .1f}, {1, 1, .1f}, front);
+  const castray::Shape shape = castray::icosphere(4);
+  sketch.add_mesh(shape.positions, shape.triangles, 0.3, {0.1, 0, 0.6}, false, ball);
+  const Scene flat = castray::test::with_detail(looking_along_z(std::move(sketch)));
+  const std::initializer_list<Pass> set = {Pass::albedo, Pass::normal, Pass::depth, Pass::position};
+  const Passes expected = render(flat, set, options_of());
+  for (const Transform& place : castray::test::kinds_of_places()) {
+    const Passes found = render(castray::test::as_instances(flat, {place}), set, options_of());
+    REQUIRE(found.channels.size() == expected.channels.size());
+    for (std::size_t c = 0; c < found.channels.size(); ++c)
+      for (std::size_t i = 0; i < side * side; ++i)
+        CHECK(found.channels[c].values[i] == Approx(expected.channels[c].values[i]).margin(1e-5));
+  }
 }
 
 TEST_CASE("of seven things in a pixel the six that cover most have ranks, in their order") {

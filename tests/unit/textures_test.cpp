@@ -187,16 +187,16 @@ TEST_CASE("a normal map tilts towards growing u and v, also where the image is m
     Scene scene = square(mirrored);
     put_texture(scene, SurfaceParameter::normal, plain_image({0.5f + 0.3f, 0.5f, 0.5f + 0.4f}));
     const TrianglePlace<double> place{0, 0.3, 0.3};
-    Vec3d n = bent_normal(scene, scene.materials[0], place, Vec3d(0, 0, 1));
+    Vec3d n = bent_normal(scene, scene.materials[0], place, InPlace(), Vec3d(0, 0, 1));
     CHECK(n.x == Approx(mirrored ? -0.6 : 0.6));
     CHECK(n.y == Approx(0).margin(1e-7));
     CHECK(n.z == Approx(0.8));
     scene.materials[0].map(SurfaceParameter::normal).gain = 0;
-    n = bent_normal(scene, scene.materials[0], place, Vec3d(0, 0, 1));
+    n = bent_normal(scene, scene.materials[0], place, InPlace(), Vec3d(0, 0, 1));
     CHECK(n.z == Approx(1));
     scene.textures[0] = make_texture("t", plain_image({0.5f, 0.5f + 0.3f, 0.5f + 0.4f}));
     scene.materials[0].map(SurfaceParameter::normal).gain = 1;
-    n = bent_normal(scene, scene.materials[0], place, Vec3d(0, 0, 1));
+    n = bent_normal(scene, scene.materials[0], place, InPlace(), Vec3d(0, 0, 1));
     CHECK(n.y == Approx(0.6));
     CHECK(n.x == Approx(0).margin(1e-7));
   }
@@ -209,7 +209,7 @@ TEST_CASE("a bump map's normal is that of the surface it stands for") {
     put_texture(scene, SurfaceParameter::bump, gradient(8, 8), 0.6f);  // red grows by 1 over u of 1
     scene.materials[0].map(SurfaceParameter::bump).channel = Channel::red;
     const TrianglePlace<double> place{0, 0.3, 0.4};  // away from the image's edge
-    const Vec3d n = bent_normal(scene, scene.materials[0], place, Vec3d(0, 0, 1));
+    const Vec3d n = bent_normal(scene, scene.materials[0], place, InPlace(), Vec3d(0, 0, 1));
     const Vec3d expected = normalize(Vec3d(mirrored ? 0.3 : -0.3, 0, 1));  // height 0.6 / unit 2 over x of 1
     CAPTURE(mirrored);
     for (int c = 0; c < 3; ++c) CHECK(n[c] == Approx(expected[c]).margin(1e-6));
