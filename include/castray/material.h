@@ -57,7 +57,9 @@ struct Material {
   MaterialType type = MaterialType::diffuse;
   Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet, principled: albedo of the diffuse base
   Vec3d ks{0, 0, 0};                 ///< microfacet, principled: Schlick's F0
-  Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: constant Fresnel reflectance
+  Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: Fresnel reflectance; with an index, that straight on
+  Vec3d eta{0, 0, 0};                ///< conductor: its complex index of refraction is eta + i k, of red,
+  Vec3d k{0, 0, 0};                  ///< green and blue light; eta 0: the reflectance is constant
   Vec3d transmittance{1, 1, 1};      ///< dielectric: tint of what passes through the surface
   Vec3d ke{0, 0, 0};                 ///< emitted radiance
   double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
@@ -69,7 +71,8 @@ struct Material {
   bool correlated_masking = true;    ///< false, reference integrator only: to compare with renderers without
   double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
   bool two_sided_emission = false;
-  bool vertex_colors = false;  ///< Scene::colors multiply kd where the triangle has them
+  bool multiple_scattering = false;  ///< conductor: add what facets reflect more than once
+  bool vertex_colors = false;        ///< Scene::colors multiply kd where the triangle has them
 
   std::array<TextureMap, surface_parameters> maps{};  ///< by SurfaceParameter
 
@@ -95,6 +98,7 @@ struct Material {
     return emits() && (map(SurfaceParameter::ke).used() || map(SurfaceParameter::coverage).used());
   }
   bool may_have_holes() const { return coverage < 1 || map(SurfaceParameter::coverage).used(); }
+  bool has_index() const { return eta.x > 0; }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
 };
 

@@ -15,11 +15,11 @@ struct Bsdf {
   Vec kd, ks;   ///< the values of slot_kd and slot_ks
   Float alpha;  ///< 0: smooth
   Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side
-  Uint albedo;  ///< microfacet, principled: offset of its lobe's table
+  Uint albedo;  ///< offset of its lobe's table, where it has one
   const KernelAlbedo* albedos;
   Float metal_sheen, coat;  ///< principled, in whose lanes alone they are set: slot_metal_sheen, slot_coat
   Uint record;              ///< offset of the material
-  const KernelMaterial* materials;
+  const KernelMaterial *materials, *indices;  ///< as in MaterialTables
 
   CASTRAY_INLINE Mask is(MaterialType t) const { return type == Uint((uint32_t)t); }
   CASTRAY_INLINE Mask smooth() const { return alpha <= Float(0.f); }

@@ -103,7 +103,12 @@ bool uses_vertex_colors(const Material& m) {
   return m.vertex_colors && std::ranges::any_of(descriptor_of(m.type).keys, is_key);
 }
 
-bool has_lobe_rows(const Material& m) { return descriptor_of(m.type).finish && m.has_alpha_map(); }
+bool has_lobe_table(const Material& m) {
+  if (m.type == MaterialType::conductor) return m.multiple_scattering && !has_smooth_lobe(m);
+  return descriptor_of(m.type).finish;
+}
+
+bool has_lobe_rows(const Material& m) { return has_lobe_table(m) && m.has_alpha_map(); }
 
 std::uint32_t traits_of(const Material& material) {
   std::uint32_t traits = descriptor_of(material.type).traits(material);

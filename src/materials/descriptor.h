@@ -44,7 +44,7 @@ struct MaterialDescriptor {
   Vec3d (*albedo)(const SurfaceValues<double>& values);
   /// Makes of `values`, by ParameterSlot, those that the kernels' model wants; for a model with a lobe whose
   /// albedo is tabulated. Null: they are used as they are.
-  void (*finish)(const LobeAlbedo& lobe, double* values) = nullptr;
+  void (*finish)(const Material& material, const LobeAlbedo& lobe, double* values) = nullptr;
 };
 
 /// All materials, in the order of MaterialType.
@@ -73,7 +73,10 @@ bool has_narrow_lobe(const Material& material);
 /// Whether the colours of vertices count for a material of this type that asks for them.
 bool uses_vertex_colors(const Material& material);
 
-/// Whether the albedo of a material's lobe is looked up by the alpha of an image (LobeAlbedoRows).
+/// Whether a material's model reads the albedo of its lobe from a table.
+bool has_lobe_table(const Material& material);
+
+/// Whether that table is chosen by the alpha of an image (LobeAlbedoRows).
 bool has_lobe_rows(const Material& material);
 
 /// Of Channel, as scene files name them.

@@ -21,6 +21,7 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
   b.albedos = tables.albedos;
   b.record = record;
   b.materials = table;
+  b.indices = tables.indices;
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];

@@ -15,15 +15,15 @@ enum MaterialTrait : uint32_t {
   trait_emits = 16,
   trait_emits_behind = 32,  ///< on both sides
   trait_bent = 64,          ///< has a normal or bump map
-  trait_focuses = 128,  ///< not smooth, but all that it scatters stays in a narrow lobe, or passes through: what
-                        ///< light it sends to other surfaces are caustics
+  trait_focuses = 128,  ///< not smooth, but all that it scatters stays in a narrow lobe, or passes through:
+                        ///< what light it sends to other surfaces are caustics
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as
 /// the models want them; the others only shape those.
 enum ParameterSlot : int {
   slot_kd = 0,     ///< diffuse, principled: albedo; microfacet: that of the base over 1 - the lobe's mean
-                   ///< albedo; dielectric: transmittance
+                   ///< albedo; dielectric: transmittance; conductor: see scattered_again of conductor.h
   slot_ks = 3,     ///< microfacet, principled: F0; conductor: reflectance
   slot_alpha = 6,  ///< GGX width; 0 where the lobe is treated as perfectly smooth
   slot_emission = 7,
@@ -65,9 +65,10 @@ struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
   float ior;
+  float eta[3], k[3];         ///< conductor: complex index of refraction; eta 0: constant reflectance
   uint32_t type;              ///< MaterialType
   uint32_t traits;            ///< MaterialTrait set
-  uint32_t albedo;            ///< microfacet, principled: offset in floats into MaterialTables::albedos
+  uint32_t albedo;            ///< of a lobe with a table: offset in floats into MaterialTables::albedos
   float albedo_rows;          ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
   uint32_t clearcoat_albedo;  ///< principled: likewise
   float clearcoat_rows;
@@ -109,6 +110,8 @@ struct KernelDetail {
   float least_alpha;              ///< where an image says less
   uint32_t albedo;                ///< as the material's
   float albedo_rows, clearcoat_rows;
+  uint32_t multiple_scattering;  ///< conductor: 1: facets scatter more than once
+  float mean_fresnel[3];         ///< conductor: of its index; 0: it is the reflectance
 };
 
 /// All materials of a scene.
@@ -116,6 +119,7 @@ struct MaterialTables {
   const KernelMaterial* materials;
   const KernelDetail* details;
   const KernelAlbedo* albedos;
+  const KernelMaterial* indices;  ///< `materials` where one has a complex index, else null
 };
 
 /// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "materials/conductor.h"
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
 #include "materials/principled.h"
@@ -32,6 +33,10 @@ float pack(double first, double second) {
   return std::bit_cast<float>(bits(first) | bits(second) << 16);
 }
 
+void copy(const Vec3d& from, float (&to)[3]) {
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
+}
+
 KernelMap map_of(const TextureMap& map, const KernelTexture& texture) {
   KernelMap k{};
   k.texture = texture;
@@ -55,6 +60,8 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   KernelMaterial k{};
   k.coverage = static_cast<float>(m.coverage);
   k.ior = static_cast<float>(m.ior);
+  copy(m.eta, k.eta);
+  copy(m.k, k.k);
   k.type = static_cast<std::uint32_t>(m.type);
   k.traits = traits_of(m);
   auto values = SurfaceValues<double>(m).value;
@@ -68,11 +75,11 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     k.albedo = albedo_rows();
     k.albedo_rows = LobeAlbedoRows::steps;
     values[slot_alpha] = LobeAlbedoRows::alpha_of(row);
-    descriptor.finish((*rows_)[row], values.data());
-  } else if (descriptor.finish) {
+    descriptor.finish(m, (*rows_)[row], values.data());
+  } else if (has_lobe_table(m)) {
     const LobeAlbedo& lobe = lobes_.of(values[slot_alpha]);
     k.albedo = albedo_offset(values[slot_alpha], lobe);
-    descriptor.finish(lobe, values.data());
+    descriptor.finish(m, lobe, values.data());
   }
   if (has_clearcoat_rows(m)) {
     k.clearcoat_albedo = albedo_rows();
@@ -86,6 +93,8 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   detail.albedo = k.albedo;
   detail.albedo_rows = k.albedo_rows;
   detail.clearcoat_rows = k.clearcoat_rows;
+  detail.multiple_scattering = has_lobe_table(m) && m.multiple_scattering;
+  if (m.has_index()) copy(mean_fresnel(m), detail.mean_fresnel);
   std::transform(values.begin(), values.begin() + vertex_floats, k.value,
                  [](double v) { return static_cast<float>(v); });
   k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
@@ -104,6 +113,12 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     k.detail = static_cast<std::uint32_t>(details.size());
   }
   materials.push_back(k);
+}
+
+MaterialTables KernelMaterials::tables() const {
+  const auto has_index = [](const KernelMaterial& m) { return m.eta[0] > 0; };
+  const bool any = std::ranges::any_of(materials, has_index);
+  return {materials.data(), details.data(), albedos.data(), any ? materials.data() : nullptr};
 }
 
 std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lobe) {

@@ -20,6 +20,8 @@ class KernelMaterials {
   KernelMaterials(const KernelMaterials&) = delete;
   KernelMaterials& operator=(const KernelMaterials&) = delete;
 
+  MaterialTables tables() const;
+
   std::vector<KernelMaterial> materials;  ///< light_density is left to who knows the lights
   std::vector<KernelDetail> details;
   std::vector<KernelAlbedo> albedos;

@@ -34,7 +34,7 @@ const MaterialDescriptor& microfacet_descriptor() {
       .albedo =
           [](const SurfaceValues<double>& v) { return coated_albedo(v.color(slot_kd), v.color(slot_ks)); },
       .finish =
-          [](const LobeAlbedo& lobe, double* values) {
+          [](const Material&, const LobeAlbedo& lobe, double* values) {
             const auto vec = [&](int slot) {
               return Vec3d(values[slot], values[slot + 1], values[slot + 2]);
             };

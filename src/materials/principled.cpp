@@ -70,7 +70,7 @@ const MaterialDescriptor& principled_descriptor() {
             const double metallic = v.at(slot_metallic);
             return coated_albedo(kd * (1 - metallic), ks + (kd - ks) * metallic);
           },
-      .finish = [](const LobeAlbedo&, double*) {}};
+      .finish = [](const Material&, const LobeAlbedo&, double*) {}};
   return descriptor;
 }
 

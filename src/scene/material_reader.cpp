@@ -64,7 +64,7 @@ class MaterialReader {
 
   void read_constant(const MaterialKey& key, const JsonNode& node, const std::string& name) {
     if (key.kind == Kind::color)
-      material_.*std::get<Vec3d Material::*>(key.field) = read_color_of(key, node, name);
+      read_color_of(key, node, name);
     else if (key.kind == Kind::flag)
       material_.*std::get<bool Material::*>(key.field) = read_boolean(node, name);
     else
@@ -84,16 +84,27 @@ class MaterialReader {
   }
 
   /// A reflectance may be a metal's, by its name or its index.
-  static Vec3d read_color_of(const MaterialKey& key, const JsonNode& node, const std::string& name) {
+  void read_color_of(const MaterialKey& key, const JsonNode& node, const std::string& name) {
     if (is_index(key, node)) {
       const ObjectReader index(node, name, index_keys());
-      return reflectance_of_index(read_color(index.require("eta"), "\"eta\"", positive),
-                                  read_color(index.require("k"), "\"k\"", not_negative));
+      const Vec3d eta = read_color(index.require("eta"), "\"eta\"", positive),
+                  k = read_color(index.require("k"), "\"k\"", not_negative);
+      set_metal(key, {name, reflectance_of_index(eta, k), eta, k});
+    } else if (node.type == JsonNode::Type::string && is_reflectance(key)) {
+      std::vector<std::string_view> names;
+      for (const NamedMetal& metal : named_metals()) names.push_back(metal.name);
+      set_metal(key, named_metals()[choose(node, "metal", names)]);
+    } else {
+      material_.*std::get<Vec3d Material::*>(key.field) = read_color(node, name, key.range);
     }
-    if (node.type != JsonNode::Type::string || !is_reflectance(key)) return read_color(node, name, key.range);
-    std::vector<std::string_view> names;
-    for (const NamedMetal& metal : named_metals()) names.push_back(metal.name);
-    return named_metals()[choose(node, "metal", names)].reflectance;
+  }
+
+  /// A conductor's reflectance follows from the index at each angle.
+  void set_metal(const MaterialKey& key, const NamedMetal& metal) {
+    material_.*std::get<Vec3d Material::*>(key.field) = metal.reflectance;
+    if (key.parameter != SurfaceParameter::reflectance) return;
+    material_.eta = metal.eta;
+    material_.k = metal.k;
   }
 
   void set_number(const MaterialKey& key, double value) {
@@ -116,6 +127,7 @@ class MaterialReader {
     if (const JsonNode* named = reader.find("color_space"))
       space = choose(*named, "colour space", {"srgb", "linear"}) == 0 ? ColorSpace::srgb : ColorSpace::linear;
     read_factor(key, reader.find("factor"));
+    if (key.parameter == SurfaceParameter::reflectance) material_.eta = material_.k = {};  // the image is F
     const JsonNode& image = reader.require("image");
     const std::filesystem::path path = file_.parent_path() / read_string(image, "\"image\"");
     if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));

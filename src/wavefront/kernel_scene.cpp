@@ -89,9 +89,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.lights.materials = &view;
     view.lights.triangles = &view.geometry.tree.triangles;
   }
-  view.materials = materials.materials.data();
-  view.albedos = materials.albedos.data();
-  view.details = materials.details.data();
+  static_cast<MaterialTables&>(view) = materials.tables();
   look_through(view, scene.camera, width, height);
 }
 

@@ -45,6 +45,12 @@ std::vector<Material> all_materials() {
   list.back().ks = Vec3d(1);
   list.push_back(material(MaterialType::dielectric, 0.3));
   list.back().ior = 1;
+  for (const double alpha : {0.0, 0.05, 0.3, 1.0})
+    for (const bool index : {false, true}) {
+      list.push_back(material(MaterialType::conductor, alpha));
+      if (index) list.back().eta = {0.2, 0.9, 2.5}, list.back().k = {3.4, 1.5, 0.8};
+      list.back().multiple_scattering = alpha > 0.05 || !index;
+    }
   return list;
 }
 
@@ -112,8 +118,7 @@ TEST_CASE("each lane model is the host's model", "[bsdf]") {
     scene.materials = {m};
     const KernelMaterials packed(scene);
     KernelScene view{};
-    view.materials = packed.materials.data();
-    view.albedos = packed.albedos.data();
+    static_cast<MaterialTables&>(view) = packed.tables();
     const MaterialTable<double> exact(scene.materials);
     for (const std::string& isa : instruction_sets())
       for (const bool front : {true, false}) {

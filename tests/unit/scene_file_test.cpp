@@ -202,6 +202,19 @@ TEST_CASE("a number stands for a grey, a metal's name for what it reflects strai
   const Vec3d by_hand(4. / 8, 1. / 9, 1.25 / 3.25);
   check_near(material(R"("type": "conductor", "reflectance": )" + index).materials[0].reflectance, by_hand);
   check_near(material(R"("type": "principled", "ks": )" + index).materials[0].ks, by_hand);
+  CHECK_FALSE(material(R"("type": "principled", "ks": )" + index).materials[0].has_index());
+  // A conductor follows the index at all angles; an index by name is of the reflectance by name.
+  const Material given = material(R"("type": "conductor", "reflectance": )" + index).materials[0];
+  CHECK(given.eta == Vec3d(1, 2, 0.5));
+  CHECK(given.k == Vec3d(2, 0, 1));
+  for (const std::string name : {"silver", "gold", "copper", "aluminium", "iron", "chromium"}) {
+    const Material m = material(R"("type": "conductor", "reflectance": ")" + name + '"').materials[0];
+    const Vec3d one(1),
+        r = ((m.eta - one) * (m.eta - one) + m.k * m.k) / ((m.eta + one) * (m.eta + one) + m.k * m.k);
+    CAPTURE(name);
+    for (int c = 0; c < 3; ++c) CHECK(r[c] == Approx(m.reflectance[c]).margin(0.0011));
+  }
+  CHECK(material(R"("type": "conductor", "multiple_scattering": true)").materials[0].multiple_scattering);
 }
 
 TEST_CASE("a light whose image is black everywhere is none") {
