@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
+
+#include "core/vector_clones.h"
 
 namespace castray {
 
@@ -11,41 +14,67 @@ constexpr int columns = tile_side;
 constexpr unsigned all_columns = 0xff;
 constexpr double brightest_sample = 0x1p50;  ///< in units
 
+// A number for each column of a tile.
+using Floats [[gnu::vector_size(columns * sizeof(float))]] = float;
+using Doubles [[gnu::vector_size(columns * sizeof(double))]] = double;
+using Longs [[gnu::vector_size(columns * sizeof(std::int64_t))]] = std::int64_t;
+using Counts [[gnu::vector_size(columns * sizeof(std::uint32_t))]] = std::uint32_t;
+
 unsigned row_bits(std::uint64_t tile, int row) {
   return static_cast<unsigned>(tile >> (row * columns)) & all_columns;
 }
 
-/// The nearest whole number, of 0 <= x < 2^51: adding 1.5 * 2^52 leaves it in the last bits.
-std::int64_t nearest(double x) {
+/// The nearest whole numbers, of 0 <= x < 2^51: adding 1.5 * 2^52 leaves them in the last bits.
+void round_to(const Doubles& x, Longs& whole) {
   constexpr double shift = 0x1.8p52;
-  return std::bit_cast<std::int64_t>(x + shift) - std::bit_cast<std::int64_t>(shift);
+  const Doubles shifted = x + shift;
+  std::memcpy(&whole, &shifted, sizeof whole);
+  whole -= std::bit_cast<std::int64_t>(shift);
 }
 
-/// The reflected radiance of a tile's row, in units.
+/// Of a tile's row, in three channels.
 struct RowValues {
-  unsigned smooth = 0;
-  std::int64_t value[3][columns] = {};
-
-  RowValues() = default;
-  RowValues(const TileSamples& tile, int row, double per_unit) : smooth(row_bits(tile.smooth, row)) {
-    for (int c = 0; c < 3; ++c) {
-      const float *radiance = tile.radiance[c] + row * columns, *emitted = tile.emitted[c] + row * columns;
-      for (int i = 0; i < columns; ++i) {
-        const double reflected = std::max(radiance[i] - emitted[i], 0.f);
-        value[c][i] = nearest(std::min(reflected * per_unit, brightest_sample));
-      }
-    }
-  }
+  Longs channel[3] = {};
 };
 
-/// Adds `value` to sums[0..7] where there is a bit.
-template <class Sum>
-void add_where(unsigned bits, const Sum* value, Sum* sums) {
-  if (bits == all_columns)
-    for (int i = 0; i < columns; ++i) sums[i] += value[i];
-  else
-    for (int i = 0; i < columns; ++i)
-      if (bits >> i & 1) sums[i] += value[i];
+/// The reflected radiance of row r, in units.
+void read_reflected(const TileSamples& tile, int r, double per_unit, RowValues& values) {
+  for (int c = 0; c < 3; ++c) {
+    Floats radiance, emitted;
+    std::memcpy(&radiance, tile.radiance[c] + r * columns, sizeof radiance);
+    std::memcpy(&emitted, tile.emitted[c] + r * columns, sizeof emitted);
+    const Floats reflected = radiance - emitted;
+    const Doubles x = __builtin_convertvector(reflected > 0 ? reflected : Floats{}, Doubles) * per_unit;
+    round_to(x < brightest_sample ? x : brightest_sample - Doubles{}, values.channel[c]);
+  }
+}
+
+/// Adds the columns that have a bit to the sums of pixels x to x + 7, all in the window.
+void add_whole_row(const RowValues& values, unsigned bits, std::uint32_t* counts, std::int64_t* sums,
+                   int width, int x) {
+  constexpr Longs bit_of_column = {1, 2, 4, 8, 16, 32, 64, 128};
+  const Longs mask = (bit_of_column & std::int64_t{bits}) != 0;
+  const auto add = [&](auto* to, const auto& more) {
+    auto sum = more;
+    std::memcpy(&sum, to + x, sizeof sum);
+    sum += more;
+    std::memcpy(to + x, &sum, sizeof sum);
+  };
+  add(counts, __builtin_convertvector(-mask, Counts));
+  for (int c = 0; c < 3; ++c) {
+    const Longs more = values.channel[c] & mask;
+    add(sums + std::ptrdiff_t{c} * width, more);
+  }
+}
+
+/// The same for a row that reaches out of the window, where it has no bits.
+void add_part_of_row(const RowValues& values, unsigned bits, std::uint32_t* counts, std::int64_t* sums,
+                     int width, int x) {
+  for (int i = 0; i < columns; ++i) {
+    if ((bits >> i & 1) == 0) continue;
+    ++counts[x + i];
+    for (int c = 0; c < 3; ++c) sums[c * width + x + i] += values.channel[c][i];
+  }
 }
 
 }  // namespace
@@ -58,29 +87,36 @@ DifferenceSums::DifferenceSums(int width, int height, double scale)
       sums_(row(halves, 0) * channels),
       counts_(row(halves, 0)) {}
 
+CASTRAY_VECTOR_CLONES
 void DifferenceSums::add(const TileSamples& tile, int begin, int end, int x, int y) {
-  constexpr std::uint32_t ones[columns] = {1, 1, 1, 1, 1, 1, 1, 1};
   const double per_unit = 1 / radiance_unit();
   const int half = static_cast<int>(tile.sample & 1);
-  RowValues here(tile, begin, per_unit);
+  const bool inside = x >= 0 && x + columns <= width_;
+  RowValues here, next, difference;
+  read_reflected(tile, begin, per_unit, here);
   for (int r = begin; r < end; ++r) {
-    const RowValues next = r + 1 < columns ? RowValues(tile, r + 1, per_unit) : RowValues();
-    const unsigned kept = row_bits(tile.kept, r) & here.smooth;
-    const unsigned added[terms] = {kept, kept & here.smooth >> 1, kept & next.smooth};
-    std::uint32_t* count = counts_.data() + row(half, y + r);
-    std::int64_t* sum = sums_.data() + row(half, y + r) * channels;
-    for (int term = 0; kept && term < terms; ++term, count += width_) {
-      add_where(added[term], ones, count + x);
-      for (int c = 0; c < channels; ++c, sum += width_) {
-        std::int64_t value[columns] = {};
-        const std::int64_t* own_value = here.value[c];
-        for (int i = 0; i < columns; ++i) value[i] = own_value[i];
-        if (term == right)
-          for (int i = 0; i + 1 < columns; ++i) value[i] = own_value[i + 1] - own_value[i];
-        if (term == below)
-          for (int i = 0; i < columns; ++i) value[i] = next.value[c][i] - own_value[i];
-        add_where(added[term], value, sum + x);
-      }
+    const bool last = r + 1 == columns;
+    if (!last) read_reflected(tile, r + 1, per_unit, next);
+    const unsigned smooth = row_bits(tile.smooth, r), kept = row_bits(tile.kept, r) & smooth,
+                   smooth_below = last ? 0 : row_bits(tile.smooth, r + 1);
+    const auto add = [&](Term term, const RowValues& values, unsigned bits) {
+      const std::size_t at = row(half, y + r) + place(term);
+      std::uint32_t* counts = counts_.data() + at;
+      std::int64_t* sums = sums_.data() + at * channels;
+      if (inside)
+        add_whole_row(values, bits, counts, sums, width_, x);
+      else
+        add_part_of_row(values, bits, counts, sums, width_, x);
+    };
+    if (kept) {
+      add(own, here, kept);
+      for (int c = 0; c < 3; ++c)
+        difference.channel[c] =
+            __builtin_shufflevector(here.channel[c], here.channel[c], 1, 2, 3, 4, 5, 6, 7, 7) -
+            here.channel[c];
+      add(right, difference, kept & smooth >> 1);
+      for (int c = 0; c < 3; ++c) difference.channel[c] = next.channel[c] - here.channel[c];
+      add(below, difference, kept & smooth_below);
     }
     here = next;
   }

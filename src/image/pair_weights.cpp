@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "castray/vec.h"
+#include "core/vector_clones.h"
 
 namespace castray {
 
@@ -26,6 +27,7 @@ constexpr float stiffest = 16384;
 float square(float x) { return x * x; }
 
 /// The luminance of the mean of a term, 0 without samples, of row y.
+CASTRAY_VECTOR_CLONES
 void read_luminance(const DifferenceSums& sums, int half, int y, Term term, float* out) {
   const std::int64_t *red = sums.sums(half, y, term, 0), *green = sums.sums(half, y, term, 1),
                      *blue = sums.sums(half, y, term, 2);
@@ -100,6 +102,7 @@ class Weights {
       }
     }
 
+    CASTRAY_VECTOR_CLONES
     void add_up(const PixelPlane& plane, const DifferenceSums& of, int half, int y, Term term) {
       for (auto& column : columns) std::fill(column.begin(), column.end(), 0.f);
       for (int row = std::max(y - 1, 0); row < std::min(y + 2, of.height()); ++row) {
@@ -158,6 +161,7 @@ class Weights {
 
   /// The variance of the differences of a row's first `pairs` pixels, to neighbours in the film: that among
   /// 3x3 of them, or how far this one is from their mean.
+  CASTRAY_VECTOR_CLONES
   void write_pairs(int y, int pairs, const Neighbourhood& around, const float* difference,
                    const std::uint32_t* count, const float* screen, float* weight) const {
     for (int x = 0; x < pairs; ++x) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/threads.h"
+#include "core/vector_clones.h"
 #include "image/correction_share.h"
 #include "image/pair_weights.h"
 #include "image/row_means.h"
@@ -44,6 +45,7 @@ class RightSide {
   }
 
  private:
+  CASTRAY_VECTOR_CLONES
   void pull_right(int y, PixelPlanes& b) {
     difference_.read(sums_, half_, y, Term::right);
     const float* weight = weights_.right.row(y);
@@ -59,6 +61,7 @@ class RightSide {
   }
 
   /// Of this row and the next, as far as they are wanted.
+  CASTRAY_VECTOR_CLONES
   void pull_below(int y, bool this_row, bool next_row, PixelPlanes& b) {
     difference_.read(sums_, half_, y, Term::below);
     const float* weight = weights_.below.row(y);

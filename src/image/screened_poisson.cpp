@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/vector_clones.h"
+
 namespace castray {
 
 namespace {
@@ -49,48 +51,74 @@ struct Strip {
   explicit Strip(int width) : even(width), odd(width) {}
 };
 
-/// Row y of a step from zero. Rows around the image are zero.
-void start_row(const Level& level, std::size_t c, int y, StripPlane& to) {
-  float* x = to.row(y);
-  if (y < 0 || y >= level.a.height) {
-    std::fill_n(x, level.a.width, 0.f);
-    return;
-  }
-  const float *inverse = level.inverse_diagonal.row(y), *b = level.b[c].row(y);
-  for (int i = 0; i < level.a.width; ++i) x[i] = first_step * inverse[i] * b[i];
+/// What the equations of a row say of its values and of those around.
+struct RowEquations {
+  int width;
+  const float *screen, *right, *below, *above, *inverse_diagonal, *b;
+
+  RowEquations(const Level& level, std::size_t c, int y)
+      : width(level.a.width),
+        screen(level.a.screen.row(y)),
+        right(level.a.right.row(y)),
+        below(level.a.below.row(y)),
+        above(level.a.below.row(y - 1)),
+        inverse_diagonal(level.inverse_diagonal.row(y)),
+        b(level.b[c].row(y)) {}
+};
+
+/// A row and those above and below it.
+struct RowsAround {
+  const float *row, *up, *down;
+
+  template <class Plane>
+  RowsAround(Plane& plane, int y) : row(plane.row(y)), up(plane.row(y - 1)), down(plane.row(y + 1)) {}
+};
+
+/// A damped Jacobi step from zero.
+CASTRAY_VECTOR_CLONES
+void start(const RowEquations& a, float* __restrict next) {
+  for (int i = 0; i < a.width; ++i) next[i] = first_step * a.inverse_diagonal[i] * a.b[i];
 }
 
-/// Row y of a damped Jacobi step.
-template <class From, class To>
-void relax_row(const Level& level, std::size_t c, int y, float step, From& from, To& to) {
-  float* __restrict next = to.row(y);
-  if (y < 0 || y >= level.a.height) {
-    std::fill_n(next, level.a.width, 0.f);
-    return;
-  }
-  const float *right = level.a.right.row(y), *below = level.a.below.row(y), *above = level.a.below.row(y - 1),
-              *inverse = level.inverse_diagonal.row(y), *b = level.b[c].row(y), *x = from.row(y),
-              *up = from.row(y - 1), *down = from.row(y + 1);
-  for (int i = 0; i < level.a.width; ++i) {
-    const float pull =
-        b[i] + ((right[i] * x[i + 1] + right[i - 1] * x[i - 1]) + (below[i] * down[i] + above[i] * up[i]));
-    next[i] = x[i] + step * (inverse[i] * pull - x[i]);
+/// A damped Jacobi step.
+CASTRAY_VECTOR_CLONES
+void relax(const RowEquations& a, float step, const RowsAround& from, float* __restrict next) {
+  const float *x = from.row, *up = from.up, *down = from.down;
+  for (int i = 0; i < a.width; ++i) {
+    const float pull = a.b[i] + ((a.right[i] * x[i + 1] + a.right[i - 1] * x[i - 1]) +
+                                 (a.below[i] * down[i] + a.above[i] * up[i]));
+    next[i] = x[i] + step * (a.inverse_diagonal[i] * pull - x[i]);
   }
 }
 
-/// Adds the residual of row y, summed over pairs of pixels.
-void add_residual(const Level& level, std::size_t c, int y, StripPlane& from, float* sums) {
-  const PixelCouplings& a = level.a;
-  const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
-              *above = a.below.row(y - 1), *b = level.b[c].row(y), *x = from.row(y), *up = from.row(y - 1),
-              *down = from.row(y + 1);
+/// Adds the residual, summed over pairs of pixels.
+CASTRAY_VECTOR_CLONES
+void add_residual(const RowEquations& a, const RowsAround& from, float* __restrict sums) {
+  const float *x = from.row, *up = from.up, *down = from.down;
   const auto residual = [&](int i) {
-    return (b[i] - screen[i] * x[i]) + ((right[i] * (x[i + 1] - x[i]) + right[i - 1] * (x[i - 1] - x[i])) +
-                                        (below[i] * (down[i] - x[i]) + above[i] * (up[i] - x[i])));
+    return (a.b[i] - a.screen[i] * x[i]) +
+           ((a.right[i] * (x[i + 1] - x[i]) + a.right[i - 1] * (x[i - 1] - x[i])) +
+            (a.below[i] * (down[i] - x[i]) + a.above[i] * (up[i] - x[i])));
   };
   const int pairs = a.width / 2;
   for (int i = 0; i < pairs; ++i) sums[i] += residual(2 * i) + residual(2 * i + 1);
   if (a.width % 2 == 1) sums[pairs] += residual(a.width - 1);
+}
+
+/// x with the corrections of a coarser grid, each of which is that of two pixels.
+CASTRAY_VECTOR_CLONES
+void add_coarse(const float* x, const float* coarse, int width, float* __restrict sum) {
+  for (int i = 0; i + 1 < width; i += 2) {
+    sum[i] = x[i] + coarse[i / 2];
+    sum[i + 1] = x[i + 1] + coarse[i / 2];
+  }
+  if (width % 2 == 1) sum[width - 1] = x[width - 1] + coarse[width / 2];
+}
+
+/// next + further (x - next).
+CASTRAY_VECTOR_CLONES
+void go_further(const float* x, float further, int width, float* __restrict next) {
+  for (int i = 0; i < width; ++i) next[i] += further * (x[i] - next[i]);
 }
 
 class Multigrid {
@@ -175,19 +203,18 @@ class Multigrid {
   void go_down(std::size_t i, bool relaxed) {
     Level &level = levels_[i], &coarse = levels_[i + 1];
     for_strips(level, [&](Strip& strip, std::size_t c) {
-      for (int y = strip.begin - 2; y < strip.end + 2; ++y) {
+      for_rows(level, c, strip, 2, strip.even, [&](const RowEquations& a, int y, float* next) {
         if (relaxed)
-          relax_row(level, c, y, first_step, level.x[c], strip.even);
+          relax(a, first_step, {level.x[c], y}, next);
         else
-          start_row(level, c, y, strip.even);
-      }
-      for (int y = strip.begin - 1; y < strip.end + 1; ++y)
-        relax_row(level, c, y, second_step, strip.even, strip.odd);
+          start(a, next);
+      });
+      relax_rows(level, c, strip);
       for (int y = strip.begin; y < strip.end; ++y) {
         std::copy_n(strip.odd.row(y), level.a.width, level.next[c].row(y));
         float* sums = coarse.b[c].row(y / 2);
         if (y % 2 == 0) std::fill_n(sums, coarse.a.width, 0.f);
-        add_residual(level, c, y, strip.odd, sums);
+        add_residual({level, c, y}, {strip.odd, y}, sums);
       }
     });
     std::swap(level.x, level.next);
@@ -203,42 +230,48 @@ class Multigrid {
     Level &level = levels_[i], &coarse = levels_[i + 1];
     if (i + 2 < levels_.size()) go_up(i + 1, {});
     for_strips(level, [&](Strip& strip, std::size_t c) {
-      for (int y = strip.begin - 2; y < strip.end + 2; ++y) add_coarse(coarse, level, c, y, strip.even);
-      for (int y = strip.begin - 1; y < strip.end + 1; ++y)
-        relax_row(level, c, y, second_step, strip.even, strip.odd);
+      for_rows(level, c, strip, 2, strip.even, [&](const RowEquations& a, int y, float* next) {
+        add_coarse(level.x[c].row(y), coarse.x[c].row(y / 2), a.width, next);
+      });
+      relax_rows(level, c, strip);
       for (int y = strip.begin; y < strip.end; ++y) {
-        float* next = level.next[c].row(y);
-        relax_row(level, c, y, first_step, strip.odd, strip.even);
-        const float* x = strip.even.row(y);
-        if (further)
-          for (int k = 0; k < level.a.width; ++k) next[k] += *further * (x[k] - next[k]);
-        else
-          std::copy_n(x, level.a.width, next);
+        float *next = level.next[c].row(y), *x = further ? strip.even.row(y) : next;
+        relax({level, c, y}, first_step, {strip.odd, y}, x);
+        if (further) go_further(x, *further, level.a.width, next);
       }
     });
     std::swap(level.x, level.next);
   }
 
-  static void add_coarse(const Level& coarse, const Level& level, std::size_t c, int y, StripPlane& to) {
-    float* sum = to.row(y);
-    if (y < 0 || y >= level.a.height) {
-      std::fill_n(sum, level.a.width, 0.f);
-      return;
-    }
-    const float *x = level.x[c].row(y), *more = coarse.x[c].row(y / 2);
-    for (int k = 0; k < level.a.width; ++k) sum[k] = x[k] + more[k / 2];
+  /// `write(equations, y, to)` for the rows of a strip and `around` more on both sides, but that rows around
+  /// the image are zero.
+  template <class Write>
+  static void for_rows(const Level& level, std::size_t c, const Strip& strip, int around, StripPlane& to,
+                       Write write) {
+    for (int y = strip.begin - around; y < strip.end + around; ++y)
+      if (y < 0 || y >= level.a.height)
+        std::fill_n(to.row(y), level.a.width, 0.f);
+      else
+        write({level, c, y}, y, to.row(y));
+  }
+
+  /// The second of two steps downwards, and the first upwards.
+  static void relax_rows(const Level& level, std::size_t c, Strip& strip) {
+    for_rows(level, c, strip, 1, strip.odd, [&](const RowEquations& a, int y, float* next) {
+      relax(a, second_step, {strip.even, y}, next);
+    });
   }
 
   void solve_coarsest() {
     Level& level = levels_.back();
     for (std::size_t c = 0; c < 3; ++c) {
       PixelPlane &x = level.x[c], &next = level.next[c];
-      const auto relax = [&](float step) {
-        for (int y = 0; y < level.a.height; ++y) relax_row(level, c, y, step, x, next);
+      const auto step_all = [&](float step) {
+        for (int y = 0; y < level.a.height; ++y) relax({level, c, y}, step, {x, y}, next.row(y));
         std::swap(x, next);
       };
       std::fill(x.values.begin(), x.values.end(), 0.f);
-      for (int sweep = 0; sweep <= coarsest_sweeps; ++sweep) relax(first_step), relax(second_step);
+      for (int sweep = 0; sweep <= coarsest_sweeps; ++sweep) step_all(first_step), step_all(second_step);
     }
   }
 
