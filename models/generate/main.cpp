@@ -41,11 +41,15 @@ void write_obj(const Shape& shape, bool leaves, const std::string& title, const 
                          fs::path(file).replace_extension(".mtl").filename().string());
     for (const Vec3d& p : shape.positions) out << fmt::format("v {:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
     for (const auto& [u, v] : shape.uvs) out << fmt::format("vt {} {}\n", u, v);
+    for (const Vec3d& n : shape.normals) out << fmt::format("vn {:.9g} {:.9g} {:.9g}\n", n.x, n.y, n.z);
+    const auto corner = [&](std::uint32_t i) {
+      std::string text = fmt::format("{}", i + 1);
+      if (!shape.uvs.empty()) text += fmt::format("/{}", i + 1);
+      if (!shape.normals.empty()) text += fmt::format("{}{}", shape.uvs.empty() ? "//" : "/", i + 1);
+      return text;
+    };
     for (const Index3& t : shape.triangles)
-      if (shape.uvs.empty())
-        out << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
-      else
-        out << fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+      out << fmt::format("f {} {} {}\n", corner(t[0]), corner(t[1]), corner(t[2]));
   });
   if (leaves) write_leaf_material(shape, file);
 }
@@ -172,9 +176,9 @@ int run(int argc, char** argv) {
   std::string shape, file;
   std::uint32_t triangles = 0, seed = 1;
   CLI::App app{"Writes a mesh made by rule.", "castray-generate"};
-  app.add_option(
-         "shape", shape,
-         "icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves, cut_leaves or forest")
+  app.add_option("shape", shape,
+                 "icosphere, smooth_icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves, "
+                 "cut_leaves or forest")
       ->required();
   app.add_option("-n,--triangles", triangles, "how many, about (terrain, hair, soup, sticks: exactly)")
       ->required();

@@ -128,6 +128,12 @@ std::uint32_t rounded_root(double value) {
 
 Shape icosphere(std::uint32_t frequency) { return GeodesicBuilder(std::max(1u, frequency)).shape; }
 
+Shape smooth_icosphere(std::uint32_t frequency) {
+  Shape shape = icosphere(frequency);
+  shape.normals = shape.positions;
+  return shape;
+}
+
 Shape blob(std::uint32_t frequency, std::uint32_t seed) {
   Shape shape = icosphere(frequency);
   for (Vec3d& p : shape.positions) p *= 0.72 + 0.5 * fractal_noise(p * 1.8 + Vec3d(5.0), 4, seed);
@@ -223,6 +229,7 @@ Shape sticks(std::uint32_t triangles, std::uint32_t seed) {
 Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t seed) {
   if (triangles == 0) throw InputError("a shape needs at least 1 triangle");
   if (name == "icosphere") return icosphere(rounded_root(triangles / 20.0));
+  if (name == "smooth_icosphere") return smooth_icosphere(rounded_root(triangles / 20.0));
   if (name == "blob") return blob(rounded_root(triangles / 20.0), seed);
   if (name == "torus_knot") {
     const std::uint32_t around = std::max(3u, rounded_root(triangles / 40.0));
@@ -235,8 +242,8 @@ Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t s
   if (name == "masked_leaves") return masked_leaves(std::max(1u, triangles / 2), seed);
   if (name == "cut_leaves") return cut_leaves(std::max(1u, triangles / triangles_of_cut_leaf), seed);
   throw InputError("no shape '" + std::string(name) + "'" +
-                   suggestion(name, {"icosphere", "blob", "torus_knot", "terrain", "hair", "soup", "sticks",
-                                     "masked_leaves", "cut_leaves"}));
+                   suggestion(name, {"icosphere", "smooth_icosphere", "blob", "torus_knot", "terrain", "hair",
+                                     "soup", "sticks", "masked_leaves", "cut_leaves"}));
 }
 
 }  // namespace castray

@@ -16,10 +16,14 @@ struct Shape {
   std::vector<Vec3d> positions;
   std::vector<Index3> triangles;
   std::vector<std::array<float, 2>> uvs{};  ///< of the positions, or none
+  std::vector<Vec3d> normals{};             ///< likewise
 };
 
 /// The unit sphere: an icosahedron whose edges are cut in `frequency`; 20 frequency^2 triangles.
 Shape icosphere(std::uint32_t frequency);
+
+/// The same with the sphere's normals at its corners.
+Shape smooth_icosphere(std::uint32_t frequency);
 
 /// An icosphere with smooth bumps and hollows: closed, not convex.
 Shape blob(std::uint32_t frequency, std::uint32_t seed);
@@ -39,8 +43,8 @@ Shape soup(std::uint32_t triangles, std::uint32_t seed);
 /// Long thin triangles from anywhere to anywhere in the cube: their boxes fill it many times over.
 Shape sticks(std::uint32_t triangles, std::uint32_t seed);
 
-/// The shape of that name (icosphere, blob, torus_knot, terrain, hair, soup, sticks, masked_leaves,
-/// cut_leaves) with about `triangles` triangles. Throws InputError where there is none.
+/// The shape of that name (icosphere, smooth_icosphere, blob, torus_knot, terrain, hair, soup, sticks,
+/// masked_leaves, cut_leaves) with about `triangles` triangles. Throws InputError where there is none.
 Shape make_shape(std::string_view name, std::uint32_t triangles, std::uint32_t seed);
 
 }  // namespace castray

@@ -26,12 +26,11 @@ bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);
 }
 
-/// Paths from lights that are like those from the camera: where surfaces have holes they would need worlds of
-/// their own, and shading normals depend on the side that they are seen from. There is no kernel of them for
-/// instances.
+/// Paths from lights know no vertices that have a smooth normal and a map that bends it: there is more than
+/// one that they may be seen with. There is no kernel of them for instances.
 bool may_have_light_paths(const SceneNeeds& needs) {
-  return needs.specular && needs.lights > 0 && needs.instances == 0 && !needs.coverage &&
-         !needs.smooth_normals && !needs.bent_normals;
+  return needs.specular && needs.lights > 0 && needs.instances == 0 &&
+         !(needs.smooth_normals && needs.bent_normals);
 }
 
 /// The end of a shared suffix on a glossy surface keeps no direction to a light without size.
@@ -87,9 +86,8 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.light_paths = may_have_light_paths(needs) && options.caustics != Switch::off;
   if (options.caustics == Switch::on && !plan.light_paths)
     throw InputError(
-        "--caustics on: paths from lights need a lamp, a smooth mirror or glass, and no coverage, smooth "
-        "normals, "
-        "normal maps, bump maps or instances; leave it at auto");
+        "--caustics on: paths from lights need a lamp, a smooth mirror or glass, no instances, and not both "
+        "smooth normals and normal or bump maps; leave it at auto");
   plan.build = plan.list ? BuildQuality::fast : build_quality(scene, options, window);
   plan.kernel = kernel_name(plan);
   const auto skip = [&plan](bool needed, std::string_view what) {

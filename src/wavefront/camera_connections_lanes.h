@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cameras/camera_lanes.h"
-#include "wavefront/shading_lanes.h"
+#include "wavefront/light_normals_lanes.h"
 #include "wavefront/trace_lanes.h"
 
 namespace castray::CASTRAY_ISA {
@@ -74,11 +74,13 @@ CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, uint32_t 
   for (int i = 0; i < to.rays.count; i += width) {
     const Mask active = first_lanes(to.rays.count - i);
     const Uint entry = select(active, load(to.rays.names.slot + i), Uint(0u));
-    const Frame frame = make_frame(gather_entries(vertices.shading_normal, entry));
-    const Bsdf bsdf = gather_bsdf(c.scene, gather(vertices.material, entry),
-                                  gather_entries<features>(vertices.parameters, entry));
     const Vec d = load(to.rays.d, i), normal = gather_entries(vertices.normal, entry);
     const Vec wo = -normalize(d), wi = gather_entries(vertices.wo, entry);
+    Vec shading_normal = gather_entries(vertices.shading_normal, entry);
+    if constexpr (features & feature_detail) shading_normal = normal_seen_from(shading_normal, normal, wo);
+    const Frame frame = make_frame(shading_normal);
+    const Bsdf bsdf = gather_bsdf(c.scene, gather(vertices.material, entry),
+                                  gather_entries<features>(vertices.parameters, entry));
     const BsdfValue value = evaluate(bsdf, to_local(frame, wo), to_local(frame, wi));
     const Float cos_light = max(abs(dot(normal, wi)), Float(0x1p-60f));
     const Uint slot = gather(vertices.names.slot, entry);

@@ -73,7 +73,7 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
   start_light_paths(c, job, s.paths, s.light_paths);
   for (uint32_t vertex = 1; s.paths.count > 0 && may_have_edges(options, vertex + 1); ++vertex) {
     closest<Geometry>(c, s.paths, false, s.hits);
-    surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
+    surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance, true);
     if (vertex > 1) {
       CameraConnections& to = s.to_camera;
       connect_camera<Geometry, features>(c, job, vertex, s.vertices, s.hits, s.light_paths, to);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "wavefront/context_lanes.h"
+#include "wavefront/light_normals_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/shading_lanes.h"
 
@@ -42,13 +43,6 @@ CASTRAY_INLINE Float arrival_for_mis(const Context& c, const Vertices& vertices,
   return arrival;
 }
 
-/// What smooth normals change in the throughput of a path from a light, in scattering from wo to wi: seen
-/// from the camera, light comes from wo (Veach 1997, section 5.3).
-CASTRAY_INLINE Float shading_normal_factor(const Shading& shading, Vec wo, Vec wi, Vec local_wi) {
-  return abs(dot(shading.normal, wi) * shading.wo.z) /
-         max(abs(dot(shading.normal, wo) * local_wi.z), Float(0x1p-60f));
-}
-
 /// BSDF sampling and Russian roulette: the next ray of each path that survives. From lights, throughput over
 /// eta2 is that of radiance, too.
 template <uint32_t features>
@@ -66,7 +60,12 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
     if (roulette || (features & feature_materials))
       choice = draw<2>(c.options.sobol, sequence, PathBlocks::choice(vertex));
     if constexpr (features & feature_materials) {
-      const Shading shading = shading_of<features>(c.scene, vertices, i);
+      const Vec wo = load(vertices.wo, i), kept = load(vertices.shading_normal, i);
+      ScatteringNormal normal{kept, Mask(false), Float(1.f)};
+      if constexpr (features & feature_detail)
+        if (transport != Transport::from_camera)
+          normal = choose_normal(kept, load(vertices.normal, i), wo, n.u[2]);
+      const Shading shading = shading_of<features>(c.scene, vertices, i, normal.n);
       const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
       wi = to_world(shading.frame, s.wi);
       throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
@@ -74,7 +73,7 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
       arrival = arrival_for_mis(c, vertices, i, vertex, focuses, s);
       if constexpr (features & feature_detail)
         if (transport != Transport::from_camera)
-          throughput = throughput * shading_normal_factor(shading, load(vertices.wo, i), wi, s.wi);
+          throughput = throughput * shading_normal_factor(shading, normal, kept, wo, wi, s.wi);
       if (transport == Transport::from_light_caustic) throughput = select(focuses, throughput, black());
       eta2 = load(vertices.eta2 + i) * s.eta2;
       brightest = max_component(throughput) * eta2;

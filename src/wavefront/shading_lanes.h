@@ -19,11 +19,16 @@ struct Shading {
   }
 };
 
+/// Of vertices i to i + width - 1, with this shading normal.
 template <uint32_t features>
-CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, int i) {
-  const Frame frame = make_frame(load(v.shading_normal, i));
+CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, int i, Vec shading_normal) {
+  const Frame frame = make_frame(shading_normal);
   return {gather_bsdf(scene, load(v.material + i), load<features>(v.parameters, i)), frame,
           to_local(frame, load(v.wo, i)), load(v.normal, i)};
+}
+template <uint32_t features>
+CASTRAY_INLINE Shading shading_of(const KernelScene& scene, const Vertices& v, int i) {
+  return shading_of<features>(scene, v, i, load(v.shading_normal, i));
 }
 
 /// The geometric normal on wi's side.

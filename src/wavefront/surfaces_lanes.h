@@ -41,10 +41,11 @@ CASTRAY_INLINE Vec escaped_radiance(const EnvironmentTable& environment, const V
 
 /// Path vertices at the hits. Rays that miss add the environment's radiance and end. `see_emission`: hits
 /// add emission. With `keep_misses` every path keeps its entry: a miss is a black vertex with normal
-/// (0,0,0).
+/// (0,0,0). `from_light`: whatever side of the shading normal a path comes from, its vertex has that normal
+/// (see light_normals_lanes.h).
 template <class Geometry, uint32_t features, bool keep_misses>
 CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
-                            Vertices& out, Radiance& radiance) {
+                            Vertices& out, Radiance& radiance, bool from_light = false) {
   const KernelScene& scene = c.scene;
   const Geometry geometry = geometry_of<Geometry>(c);
   out.count = 0;
@@ -88,8 +89,9 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       if constexpr (features & feature_detail) {
         const TriangleTable& triangles = scene.geometry.tree.triangles;
         const auto placement = geometry.placement(at);
-        shading_normal = smooth_normal(triangles, placement, place, facing, to_viewer);
-        bend_normals(scene, triangles, placement, material, place, front, facing, to_viewer, shading_normal);
+        const Vec viewer = from_light ? facing : to_viewer;
+        shading_normal = smooth_normal(triangles, placement, place, facing, viewer);
+        bend_normals(scene, triangles, placement, material, place, front, facing, viewer, shading_normal);
       }
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);

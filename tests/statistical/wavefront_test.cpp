@@ -51,6 +51,59 @@ TEST_CASE("mirrors and glass agree with castRay, whether their caustics come fro
   });
 }
 
+namespace {
+
+/// Mirrors, glass or polished metal in a box of smooth normals, far from the geometric ones everywhere.
+Scene smooth_box(const std::function<void(Material&)>& change) {
+  return with_detail(with_larger_lamps(box_with(change), 3), 1.5f);
+}
+
+/// The same with normals that all lean to one side: from behind them surfaces are seen as flat.
+Scene leaning_box(const std::function<void(Material&)>& change) {
+  Scene scene = with_detail(with_larger_lamps(box_with(change), 3), 4);
+  for (std::size_t i = 0; i < scene.normals.size(); ++i) scene.normals[i] = scene.normals[i / 3 * 3];
+  return scene;
+}
+
+/// The same with a bump map on every surface instead.
+Scene bumpy_box(const std::function<void(Material&)>& change) {
+  Scene scene = smooth_box(change);
+  scene.normals.clear();
+  scene.triangle_normals.clear();
+  for (Material& m : scene.materials) {
+    m.map(SurfaceParameter::bump).texture = 0;
+    m.map(SurfaceParameter::bump).gain = 0.1f * static_cast<float>(scene.unit);
+  }
+  return scene;
+}
+
+void check_caustics(const std::string& name, const Scene& scene) {
+  const Expected expected(scene);
+  RenderOptions options = wavefront_options(8);
+  options.caustics = Switch::on;
+  options.reuse = {false, 8, 8, 64};
+  expected.check(name, scene, options);
+  expected.check(name + ", plain", scene, plain(options));
+}
+
+}  // namespace
+
+TEST_CASE("paths from lights have castRay's mean on smooth and bent normals", "[statistical]") {
+  const auto mirror = [](Material& m) { m.alpha = 0; };
+  const auto glass = [](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0; };
+  check_caustics("smooth glass", smooth_box(glass));
+  check_caustics("leaning mirror", leaning_box(mirror));
+  check_caustics("leaning glass", leaning_box(glass));
+  check_caustics("bumpy mirror", bumpy_box(mirror));
+}
+
+TEST_CASE("paths from lights have castRay's mean where surfaces have holes", "[statistical]") {
+  Scene scene = with_larger_lamps(box_with([](Material& m) { m.alpha = 0; }), 3);
+  for (Material& m : scene.materials)
+    if (!m.emits()) m.coverage = 0.7;
+  check_caustics("holes", scene);
+}
+
 TEST_CASE("paths from lights have castRay's mean where the camera sees a caustic's surface edge-on",
           "[statistical]") {
   const Scene scene = standard_scene("kinds/near_mirror");  // the cube's top is at the height of the camera

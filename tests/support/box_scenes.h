@@ -33,7 +33,8 @@ inline Scene with_larger_lamps(Scene scene, float times) {
   return scene;
 }
 
-inline Scene with_detail(Scene scene) {
+/// Textured, with vertex normals that lean by up to `tilt`, as a tangent.
+inline Scene with_detail(Scene scene, float tilt = 0.3f) {
   Image checks(2, 2);
   checks.pixels = {{1, 1, 1}, {.2f, .5f, .9f}, {.9f, .4f, .2f}, {.6f, .6f, .6f}};
   scene.textures.push_back(make_texture("checks", checks));
@@ -43,8 +44,8 @@ inline Scene with_detail(Scene scene) {
     scene.triangle_uvs.push_back({0, 1, 2});
     const auto first = static_cast<std::uint32_t>(scene.normals.size());
     const Vec3f v0 = scene.positions[t[0]], v1 = scene.positions[t[1]], v2 = scene.positions[t[2]];
-    const Vec3f n = normalize(cross(v1 - v0, v2 - v0)), tilt = normalize(v1 - v0) * 0.3f;
-    scene.normals.insert(scene.normals.end(), {normalize(n + tilt), n, normalize(n - tilt)});
+    const Vec3f n = normalize(cross(v1 - v0, v2 - v0)), lean = normalize(v1 - v0) * tilt;
+    scene.normals.insert(scene.normals.end(), {normalize(n + lean), n, normalize(n - lean)});
     scene.triangle_normals.push_back({first, first + 1, first + 2});
   }
   return scene;

@@ -162,8 +162,8 @@ TEST_CASE(
   RenderOptions options;
   options.width = options.height = 64;
   options.spp = 1;
-  CHECK_THAT(render(standard_scene("kinds/glass_ball_small_lamp"), options).film.key,
-             Catch::Contains("; light-paths=on"));
+  for (const char* name : {"kinds/glass_ball_small_lamp", "kinds/smooth_glass_ball"})
+    CHECK_THAT(render(standard_scene(name), options).film.key, Catch::Contains("; light-paths=on"));
   Scene scene = standard_scene("kinds/facing_mirrors");
   for (Material& m : scene.materials)
     if (m.type == MaterialType::conductor) m.reflectance = {1e-4, 1e-4, 1e-4};

@@ -60,6 +60,14 @@ TEST_CASE("generated solids are closed and face outwards") {
   CHECK(volume(icosphere(40)) == Approx(4.18879).epsilon(3e-3));
 }
 
+TEST_CASE("a smooth icosphere is an icosphere with the sphere's normals") {
+  const Shape ball = smooth_icosphere(8);
+  CHECK(ball.positions == icosphere(8).positions);
+  REQUIRE(ball.normals.size() == ball.positions.size());
+  for (std::size_t i = 0; i < ball.normals.size(); ++i)
+    CHECK(dot(ball.normals[i], ball.positions[i]) == Approx(1));
+}
+
 TEST_CASE("leaves behind a mask are those that are cut out") {
   const Shape masked = masked_leaves(50, 2), cut = cut_leaves(50, 2);
   CHECK(masked.triangles.size() == 100);

@@ -125,7 +125,8 @@ TEST_CASE("threads, crops, sample ranges and instruction sets do not show in cau
   }
 }
 
-TEST_CASE("only scenes with smooth mirrors or glass and lamps have paths from lights") {
+TEST_CASE(
+    "scenes without smooth mirrors or glass, or with maps on smooth normals, have no paths from lights") {
   RenderOptions options = small("auto");
   CHECK(render(standard_scene("cornell_box"), options).film.light_paths(0, 0) == 0);
   Scene scene = standard_scene("kinds/lamp_in_bulb");
@@ -134,6 +135,9 @@ TEST_CASE("only scenes with smooth mirrors or glass and lamps have paths from li
   options.caustics = Switch::on;
   CHECK(render(scene, options).film.light_paths(0, 0) > 0);
   CHECK_THROWS_WITH(render(standard_scene("cornell_box"), options), Catch::Contains("--caustics on"));
+  Scene mapped = standard_scene("kinds/smooth_glass_ball");
+  mapped.materials[0].map(SurfaceParameter::bump).texture = 0;
+  CHECK_THROWS_WITH(render(mapped, options), Catch::Contains("both smooth normals and"));
   options.jitter = false;
   CHECK_THROWS_WITH(render(scene, options), Catch::Contains("--jitter off"));
 }
