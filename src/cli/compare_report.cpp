@@ -96,6 +96,7 @@ json to_json(const Comparison& c) {
                        {"block", {c.noise->x0, c.noise->y0, c.noise->x1, c.noise->y1}},
                        {"channel", c.noise->channel},
                        {"t", c.noise->t},
+                       {"rms_t", c.noise->rms_t},
                        {"means", {c.noise->mean, c.noise->mean_reference}},
                        {"pass", !c.noise->differs()}};
   if (!c.notes.empty()) object["notes"] = c.notes;

@@ -91,7 +91,7 @@ NoiseTest test_all(const Window& window, double alpha, const TestBlocks& test_bl
   const int sizes = count_sizes(all);
   NoiseTest result;
   result.alpha = alpha;
-  double smallest = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity(), squares = 0;
   for (int size = 0; size < sizes; ++size) {
     const std::vector<Film::Blocks> groups = groups_of(all, 1 << size);
     const double share = 3 * static_cast<double>(groups.size()) * sizes;
@@ -100,6 +100,7 @@ NoiseTest test_all(const Window& window, double alpha, const TestBlocks& test_bl
       const std::array<BlockTest, 3> tests = test_blocks(group);
       for (std::size_t c = 0; c < 3; ++c) {
         const BlockTest& test = tests[c];
+        if (size == 0) squares += test.t * test.t;
         if (test.p * share >= smallest) continue;
         smallest = test.p * share;
         result.x0 = std::max(group.x0 * noise_block, window.x0);
@@ -113,6 +114,7 @@ NoiseTest test_all(const Window& window, double alpha, const TestBlocks& test_bl
       }
     }
   }
+  result.rms_t = std::sqrt(squares / (3 * static_cast<double>(groups_of(all, 1).size())));
   result.p = std::clamp(smallest, std::numeric_limits<double>::min(), 1.0);  // "below 0" would mean nothing
   return result;
 }

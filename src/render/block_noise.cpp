@@ -12,8 +12,8 @@ namespace {
 constexpr double least_noise = 1.0 / 64;
 /// Of an image of two halves that tells its own error.
 constexpr std::uint64_t fewest_samples = 4;
-/// What the fall of the noise is found from: films of at least so many times the samples. So much of it may
-/// be chance.
+/// What the fall of the noise is found from: films of at least so many times the samples, unless one is part
+/// of the other. So much of it may be chance.
 constexpr double least_growth = 3, chance_of_fall = 0.1;
 
 /// f(a, b) of every pixel's means in channel c.
@@ -49,6 +49,11 @@ Plane squared_radiance(const Film& a, const Film& b, int c) {
   return squares;
 }
 
+/// From mean noise `before` to `after`, in films of `growth` times the samples.
+double fall_of(double before, double after, double growth) {
+  return std::clamp(std::log(before / after) / std::log(growth) - chance_of_fall, 0., 0.5);
+}
+
 double area(const Window& w) { return static_cast<double>(w.width()) * w.height(); }
 
 }  // namespace
@@ -74,6 +79,24 @@ double PixelNoise::expected_error(const Film& film) const {
     for (int x = window_.x0; x < window_.x1; ++x)
       sum += film.count(x, y) > 0 ? at(x, y) / film.count(x, y) : 1;  // black: the error is r^2
   return sum / area(window_);
+}
+
+double fall_from_first(const Film& a, const Film& b, const Film& first_a, const Film& first_b) {
+  const Window& w = a.window();
+  double of_one = 0, of_two = 0;
+  for (int c = 0; c < 3; ++c) {
+    const Plane squares = squared_radiance(a, b, c);
+    for (int y = w.y0; y < w.y1; ++y)
+      for (int x = w.x0; x < w.x1; ++x) {
+        if (a.count(x, y) != 2 || b.count(x, y) != 2) continue;
+        const double both = a.mean(x, y)[c] - b.mean(x, y)[c];
+        const double first = first_a.mean(x, y)[c] - first_b.mean(x, y)[c], second = 2 * both - first;
+        const double share = 1 / (squares.at(x - w.x0, y - w.y0) + 0.01);
+        of_one += (first * first + second * second) / 4 * share;
+        of_two += both * both * share;
+      }
+  }
+  return of_two > 0 ? fall_of(of_one, of_two, 2) : 0;
 }
 
 BlockNoise::BlockNoise(const PixelNoise& pixels, const SampleMap& blocks) : blocks_(blocks) {
@@ -104,10 +127,10 @@ void BlockNoise::raise_the_least() {
 
 double BlockNoise::fall_from(const BlockNoise& shorter) const {
   const double growth = static_cast<double>(blocks_.total()) / static_cast<double>(shorter.blocks_.total());
-  if (growth < least_growth) return 0;
+  if (growth < least_growth) return shorter.fall_;
   const double before = shorter.mean([&](std::size_t i) { return shorter.noise_[i]; });
   const double after = mean([&](std::size_t i) { return noise_[i]; });
-  return std::clamp(std::log(before / after) / std::log(growth) - chance_of_fall, 0., 0.5);
+  return fall_of(before, after, growth);
 }
 
 double BlockNoise::expected_error(const SampleMap& map) const {

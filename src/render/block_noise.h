@@ -26,6 +26,10 @@ class PixelNoise {
   Plane plane_;
 };
 
+/// BlockNoise's fall from one sample to two: of independent films a and b of two samples, whose first are
+/// `first_a` and `first_b`. Both samples of a film count as one, so that a rare bright one is no fall.
+double fall_from_first(const Film& a, const Film& b, const Film& first_a, const Film& first_b);
+
 /// The variance of one sample in each block of an image, as relMSE.
 class BlockNoise {
  public:
@@ -33,8 +37,8 @@ class BlockNoise {
   BlockNoise(const PixelNoise& pixels, const SampleMap& blocks);
 
   /// As a sequence's error falls faster than 1/n, so does the noise of one of n samples, as n^-fall: the fall
-  /// from a film of fewer samples to this one's, less what may be chance; 0 to 1/2, and 0 between films of
-  /// about as many samples.
+  /// from a film of fewer samples to this one's, less what may be chance; 0 to 1/2, and that which was set
+  /// for the shorter film between films of about as many samples.
   double fall_from(const BlockNoise& shorter) const;
   void set_fall(double fall) { fall_ = fall; }
 

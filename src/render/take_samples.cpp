@@ -10,8 +10,8 @@ namespace castray {
 
 namespace {
 
-/// Samples per pixel of the two films of the first pilot.
-constexpr std::uint64_t first_pilot = 2;
+/// Samples per pixel of each of the two films of a pilot.
+constexpr std::uint64_t fewest_of_pilot = 2;
 /// A pilot aims at one sample for every 8 of the image, and is long enough with one for every 16.
 constexpr std::uint64_t share_aimed_at = 8, share_needed = 16;
 /// The next pilot has at most this many times the samples of a block: a short pilot's estimate is unreliable.
@@ -29,23 +29,22 @@ class TargetRun {
       : job_(job), target_(*job.options.target_error), progress_(progress), work_(work) {}
 
   RenderResult run() {
-    SampleMap pilot(job_.window, {0, first_pilot});
+    SampleMap pilot(job_.window, {0, fewest_of_pilot});
     planned_ = 2 * share_aimed_at * pilot.total();
+    bool whole = render_first_pilot();
     std::optional<BlockNoise> shorter;
-    for (std::uint64_t round = 0;; ++round) {
-      for (std::uint64_t side = 0; side < 2; ++side) {
-        pilot.set_first((last_replicate - 2 * round - side) * replicate_length);
-        if (!render_pilot(pilot, side)) return pilots_as_image();
-      }
+    for (std::uint64_t round = 1;; ++round) {
+      if (!whole) return pilots_as_image();
       const PixelNoise pixels(pilots_[0], pilots_[1]);
       BlockNoise noise(pixels, pilot);
-      if (shorter) noise.set_fall(noise.fall_from(*shorter));
+      noise.set_fall(shorter ? noise.fall_from(*shorter) : first_fall_);
       const SampleMap plan = noise.plan(target_, std::min(job_.options.spp, most_of_image));
       planned_ = stats_.paths + plan.total();
-      if (stats_.paths * share_needed >= plan.total() || round == last_round) return image(pixels, plan);
+      if (stats_.paths * share_needed >= plan.total() || round > last_round) return image(pixels, plan);
       shorter = noise;
       pilot = longer_pilot(pilot, plan);
       planned_ += 2 * pilot.total();
+      whole = render_pilot(pilot, round);
     }
   }
 
@@ -69,18 +68,40 @@ class TargetRun {
     return result;
   }
 
-  /// Whether it came to its end.
-  bool render_pilot(const SampleMap& pilot, std::uint64_t side) {
-    RenderResult result = render(pilot);
-    pilots_[side] = std::move(result.film);
-    stats_.pilot_paths = stats_.paths;
-    return stats_.stopped == Stopped::done;
+  /// The two films of a pilot; whether they came to their end.
+  bool render_pilot(SampleMap pilot, std::uint64_t round) {
+    for (std::uint64_t side = 0; side < 2; ++side) {
+      pilot.set_first(first_of_pilot(round, side));
+      pilots_[side] = render(pilot).film;
+      stats_.pilot_paths = stats_.paths;
+      if (stats_.stopped != Stopped::done) return false;
+    }
+    return true;
+  }
+
+  /// Of two samples, taken one after the other, so that it tells at once how fast the noise falls.
+  bool render_first_pilot() {
+    SampleMap one(job_.window, {0, 1});
+    if (!render_pilot(one, 0)) return false;
+    const std::array<Film, 2> first{pilots_[0], pilots_[1]};
+    for (std::uint64_t side = 0; side < 2; ++side) {
+      one.set_first(first_of_pilot(0, side) + 1);
+      pilots_[side].merge(render(one).film);
+      stats_.pilot_paths = stats_.paths;
+      if (stats_.stopped != Stopped::done) return false;
+    }
+    first_fall_ = fall_from_first(pilots_[0], pilots_[1], first[0], first[1]);
+    return true;
+  }
+
+  static std::uint64_t first_of_pilot(std::uint64_t round, std::uint64_t side) {
+    return (last_replicate - 2 * round - side) * replicate_length;
   }
 
   static SampleMap longer_pilot(const SampleMap& pilot, const SampleMap& plan) {
     std::vector<std::uint64_t> counts;
     for (std::size_t i = 0; i < plan.blocks(); ++i)
-      counts.push_back(std::min({std::max(plan.count(i) / (2 * share_aimed_at), first_pilot),
+      counts.push_back(std::min({std::max(plan.count(i) / (2 * share_aimed_at), fewest_of_pilot),
                                  fastest_growth * pilot.count(i), replicate_length}));
     SampleMap longer = pilot;
     longer.set_counts(std::move(counts));
@@ -130,6 +151,7 @@ class TargetRun {
   const ProgressCallback& progress_;
   const BandWork& work_;
   Film pilots_[2];
+  double first_fall_ = 0;      ///< of the first pilot's noise
   RenderStats stats_;          ///< of all so far
   std::uint64_t planned_ = 0;  ///< paths from the start to the end, as far as is known
 };

@@ -52,11 +52,17 @@ TEST_CASE("Student's t has the tails that SciPy computes") {
 // = 77 alarms are expected, and not none, which would show a test without power. Fixed seeds.
 TEST_CASE("films that differ only in seed raise no more than the stated rate of alarms") {
   int alarms = 0;
-  for (std::uint32_t trial = 0; trial < 1000; ++trial)
-    alarms += test_noise(noisy_film(2 * trial, 1), noisy_film(2 * trial + 1, 1), 0.05).differs();
+  double squares = 0;
+  for (std::uint32_t trial = 0; trial < 1000; ++trial) {
+    const NoiseTest test = test_noise(noisy_film(2 * trial, 1), noisy_film(2 * trial + 1, 1), 0.05);
+    alarms += test.differs();
+    squares += test.rms_t * test.rms_t / 1000;
+  }
   INFO(alarms << " alarms of 1000");
   CHECK(alarms <= 77);
   CHECK(alarms >= 5);
+  constexpr double freedom = 2 * 7;  // of 8 replicates on each side
+  CHECK(squares == Approx(freedom / (freedom - 2)).epsilon(0.05));  // the variance of Student's t
 }
 
 TEST_CASE("a change of one percent is found, with its place") {
@@ -67,6 +73,7 @@ TEST_CASE("a change of one percent is found, with its place") {
   const NoiseTest itself = test_noise(noisy_film(3, 64), noisy_film(3, 64), 0.01);
   CHECK_FALSE(itself.differs());
   CHECK(itself.p == 1);
+  CHECK(itself.rms_t == 0);
   CHECK(itself.paired);
   const NoiseTest same_seed = test_noise(noisy_film(3, 4, 1.001f), noisy_film(3, 4), 0.01);
   CHECK(same_seed.differs());  // the noise is common to both and falls out

@@ -104,11 +104,41 @@ TEST_CASE("noise that fell as samples grew is expected to fall further") {
   const double fall = after.fall_from(before);  // to a quarter over 64 times the samples, less 0.1 for chance
   CHECK(fall == Approx(1. / 3 - 0.1).epsilon(0.1));
   CHECK(before.fall_from(after) == 0);
+  BlockNoise known = after;
+  known.set_fall(0.3);
+  CHECK(after.fall_from(known) == 0.3);  // of as many samples
   SampleMap map = more;
   map.set_counts({1024, 1024});
   const double without = after.expected_error(map);
   after.set_fall(fall);
   CHECK(after.expected_error(map) == Approx(without * std::pow(8, -fall)));  // halves of 512
+}
+
+TEST_CASE(
+    "the first pilot's noise falls as far as its two samples cancel, which a rare bright one does not") {
+  const Window window{32, 32, 0, 0, 32, 32};
+  const auto fall = [&](float second, float bright) {  // samples of 1 +- 0.1, then 1 -+ 0.1 `second`
+    Film films[2], first[2];
+    for (int side = 0; side < 2; ++side) {
+      const float error = side ? 0.1f : -0.1f;
+      first[side] = Film(window, 2);
+      films[side] = Film(window, 2);
+      for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 32; ++x) {
+          const float extra = side == 0 && x == 3 && y == 5 ? bright : 0;
+          first[side].add(x, y, Vec3f(1 + error + extra));
+          films[side].add(x, y, Vec3f(1 + error + extra));
+          films[side].add(x, y, Vec3f(1 - error * second));
+        }
+    }
+    return fall_from_first(films[0], films[1], first[0], first[1]);
+  };
+  // the noise of one sample from 1 + s^2 to (1 - s)^2, less 0.1 for chance
+  CHECK(fall(0.1f, 0) == Approx(std::log2(1.01 / 0.81) - 0.1).epsilon(1e-3));
+  CHECK(fall(0.9f, 0) == 0.5);
+  CHECK(fall(-1, 0) == 0);
+  CHECK(fall(0, 0) == 0);
+  CHECK(fall(0, 1000) == 0);
 }
 
 TEST_CASE("samples are planned in proportion to the root of the noise, until the target is met") {
