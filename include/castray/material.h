@@ -62,6 +62,7 @@ struct Material {
   Vec3d k{0, 0, 0};                  ///< green and blue light; eta 0: the reflectance is constant
   Vec3d transmittance{1, 1, 1};      ///< dielectric: tint of what passes through the surface
   Vec3d ke{0, 0, 0};                 ///< emitted radiance
+  Vec3d absorption{0, 0, 0};         ///< dielectric: inside it, over a unit of length of the files
   double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
   double metallic = 0;               ///< principled, [0,1]: the metal's share
   double sheen = 0;                  ///< principled, [0,1]
@@ -98,6 +99,7 @@ struct Material {
     return emits() && (map(SurfaceParameter::ke).used() || map(SurfaceParameter::coverage).used());
   }
   bool may_have_holes() const { return coverage < 1 || map(SurfaceParameter::coverage).used(); }
+  bool absorbs() const { return type == MaterialType::dielectric && max_component(absorption) > 0; }
   bool has_index() const { return eta.x > 0; }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
 };

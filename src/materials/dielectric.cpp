@@ -21,6 +21,12 @@ const MaterialDescriptor& dielectric_descriptor() {
                                  .parameter = SurfaceParameter::transmittance,
                                  .slot = slot_kd,
                                  .text = "Tint of what passes through the surface [1, 1, 1]."},
+                                {.name = "absorption",
+                                 .kind = MaterialKey::Kind::color,
+                                 .field = &Material::absorption,
+                                 .range = not_negative,
+                                 .text = "Inside, over a unit of length: e^-absorption is what light keeps; "
+                                         "or the colour that is left after a distance [0, 0, 0]."},
                                 roughness_key(),
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {

@@ -66,6 +66,8 @@ struct KernelMaterial {
   float coverage;
   float ior;
   float eta[3], k[3];         ///< conductor: complex index of refraction; eta 0: constant reflectance
+  float absorption[3];        ///< dielectric: inside it, over a unit of length in scene space
+  uint32_t medium;            ///< dielectric: 1 + the material's index; else 0
   uint32_t type;              ///< MaterialType
   uint32_t traits;            ///< MaterialTrait set
   uint32_t albedo;            ///< of a lobe with a table: offset in floats into MaterialTables::albedos
@@ -119,7 +121,8 @@ struct MaterialTables {
   const KernelMaterial* materials;
   const KernelDetail* details;
   const KernelAlbedo* albedos;
-  const KernelMaterial* indices;  ///< `materials` where one has a complex index, else null
+  const KernelMaterial *indices,
+      *absorbing;  ///< `materials` where one has a complex index, or absorbs; else null
 };
 
 /// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density

@@ -62,6 +62,8 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   k.ior = static_cast<float>(m.ior);
   copy(m.eta, k.eta);
   copy(m.k, k.k);
+  copy(m.absorption * scene.unit, k.absorption);
+  if (m.type == MaterialType::dielectric) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
   k.type = static_cast<std::uint32_t>(m.type);
   k.traits = traits_of(m);
   auto values = SurfaceValues<double>(m).value;
@@ -116,9 +118,16 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
 }
 
 MaterialTables KernelMaterials::tables() const {
-  const auto has_index = [](const KernelMaterial& m) { return m.eta[0] > 0; };
-  const bool any = std::ranges::any_of(materials, has_index);
-  return {materials.data(), details.data(), albedos.data(), any ? materials.data() : nullptr};
+  const auto where_any = [this](const auto& has_it) {
+    return std::ranges::any_of(materials, has_it) ? materials.data() : nullptr;
+  };
+  return {.materials = materials.data(),
+          .details = details.data(),
+          .albedos = albedos.data(),
+          .indices = where_any([](const KernelMaterial& m) { return m.eta[0] > 0; }),
+          .absorbing = where_any([](const KernelMaterial& m) {
+            return std::ranges::any_of(m.absorption, [](float a) { return a > 0; });
+          })};
 }
 
 std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lobe) {

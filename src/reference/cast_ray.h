@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "castray/render_options.h"
 #include "lights/area_lights.h"
@@ -8,6 +9,7 @@
 #include "lights/environment.h"
 #include "lights/light_share.h"
 #include "materials/coverage.h"
+#include "materials/media.h"
 #include "reference/camera_sample.h"
 #include "reference/estimator.h"
 #include "reference/segments.h"
@@ -77,6 +79,7 @@ class CastRay {
     Point2<T> light_u{};    ///< for the light point of this vertex
     std::uint64_t rays = 0;
     HitFilter<T> there{};  ///< which hits count
+    Media media{};         ///< that the path's last segment is in
   };
 
   /// How a ray was sampled, which decides how much of the emission that it hits counts.
@@ -96,11 +99,18 @@ class CastRay {
   Vec3<T> cast_ray(const Ray<T>& ray, Path& path, const Arrival& arrival) const {
     ++path.rays;
     const Hit<T> hit = accel_.closest(ray, path.there);
-    if (!hit.found()) return escaped(ray.direction, arrival);
+    if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless);
     Surface<T> x = surfaces_.at(hit, ray);
     segments_.place(x, hit, ray);
+    if (transmits(x) && dot(x.normal, x.to_viewer) < 0) path.media.find(x.material);
+    const Vec3<T> transmittance = kept(path.media, hit.t);
+    path.throughput *= transmittance;
+    return transmittance * radiance_of(x, path, hit.t, arrival);
+  }
 
-    Vec3<T> radiance = emission(x, hit.t, arrival);
+  /// L that leaves x to the viewer, at `distance`.
+  Vec3<T> radiance_of(const Surface<T>& x, Path& path, T distance, const Arrival& arrival) const {
+    Vec3<T> radiance = emission(x, distance, arrival);
     const auto edges_of_next = static_cast<int>(path.vertex) + 2;
     if (options_.max_depth > 0 && edges_of_next > options_.max_depth) return radiance;
     // roulette, lobe, light
@@ -111,6 +121,22 @@ class CastRay {
     const bool clamps = options_.clamp_indirect && path.vertex == 0;
     const Vec3<T> indirect = indirect_light(x, path, T(choice[0]), T(choice[1]));
     return radiance + (clamps ? clamped(indirect, T(*options_.clamp_indirect)) : indirect);
+  }
+
+  static constexpr T endless = std::numeric_limits<T>::infinity();
+
+  Vec3<T> kept(const Media& media, T distance) const { return media.transmittance(scene_, distance); }
+
+  bool transmits(const Surface<T>& x) const {
+    return scene_.materials[x.material].type == MaterialType::dielectric;
+  }
+
+  /// The media on wi's side of x, where the path arrived through `media`.
+  Media beyond(const Surface<T>& x, const Vec3<T>& wi, Media media) const {
+    const bool front = dot(x.normal, x.to_viewer) > 0;
+    if (!transmits(x) || front == (dot(x.normal, wi) > 0)) return media;
+    front ? media.enter(x.material) : media.leave();
+    return media;
   }
 
   /// Light from outside, weighted by how the ray was sampled.
@@ -148,7 +174,8 @@ class CastRay {
     if (!(max_component(radiance) > 0)) return {};
     if (mis_) radiance *= light_share(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
     ++path.rays;
-    return segments_.visible(accel_, x, y, path.there) ? radiance : Vec3<T>();
+    if (!segments_.visible(accel_, x, y, path.there)) return {};
+    return radiance * kept(beyond(x, wi, path.media), std::sqrt(distance2));
   }
 
   /// Integral over the directions of an image of the environment, estimated in one: f Le |cos| V / pdf.
@@ -162,8 +189,8 @@ class CastRay {
     if (!(max_component(radiance) > 0)) return {};
     if (mis_) radiance *= light_share(sample.pdf, x.bsdf.pdf(x.wo, local));
     ++path.rays;
-    return accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, path.there) ? Vec3<T>()
-                                                                                        : radiance;
+    if (accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, path.there)) return {};
+    return radiance * kept(beyond(x, sample.w, path.media), endless);
   }
 
   /// The sum over lights without size: f E |cos| V.
@@ -177,7 +204,8 @@ class CastRay {
       if (!(max_component(radiance) > 0)) continue;
       ++path.rays;
       const Ray<T> ray{segments_.origin(x, sample.wi), sample.wi, sample.distance};
-      if (!accel_.occluded(ray, path.there)) sum += radiance;
+      if (accel_.occluded(ray, path.there)) continue;
+      sum += radiance * kept(beyond(x, sample.wi, path.media), sample.distance);
     }
     return sum;
   }
@@ -190,6 +218,7 @@ class CastRay {
     const Vec3<T> wi = x.frame.to_world(sample.wi);
     if (!x.consistent(wi, sample.wi)) return {};
 
+    path.media = beyond(x, wi, path.media);
     path.throughput *= sample.weight * sample.eta2;
     const T survival = survival_probability(options_.rr, path.vertex, max_component(path.throughput));
     if (!(u_roulette < survival)) return {};

@@ -7,6 +7,7 @@
 #include "materials/environment_image.h"
 #include "materials/texture.h"
 #include "scene/sky.h"
+#include "scene/sun_position.h"
 
 namespace castray {
 
@@ -24,6 +25,36 @@ int read_image(const JsonNode& node, const std::filesystem::path& file, SceneBui
   return builder.add_texture(path, ColorSpace::srgb);
 }
 
+/// "time" of a sky, if the sun's place follows from it.
+const JsonNode* time_of_sun(const ObjectReader& reader) {
+  const JsonNode* by_time = nullptr;
+  for (const char* key : {"time", "latitude", "longitude"})
+    if (const JsonNode* found = reader.find(key)) by_time = found;
+  if (!by_time) return nullptr;
+  for (const char* key : {"sun_elevation", "sun_azimuth"})
+    if (const JsonNode* angle = reader.find(key))
+      throw InputError(angle->key_place,
+                       fmt::format("\"{}\" or \"{}\", not both: they place the sun", key, by_time->key));
+  for (const char* key : {"latitude", "longitude"}) reader.require(key);
+  return &reader.require("time");
+}
+
+void place_sun(const JsonNode& time, double latitude, double longitude, Sky& sky) {
+  const std::optional<double> days = days_of(read_string(time, "\"time\""));
+  if (!days)
+    throw InputError(
+        time.place,
+        "\"time\" is one from 1900 to 2100 as \"2024-06-21T12:00Z\" or \"2024-06-21T14:00+02:00\"");
+  const SunPosition sun = sun_position(*days, latitude, longitude);
+  sky.sun_elevation = sun.elevation + refraction(sun.elevation);
+  sky.sun_azimuth = sun.azimuth;
+  if (sky.sun_elevation < 0)
+    throw InputError(time.place,
+                     fmt::format("the sun is {:.1f} degrees below the horizon then, at this latitude and "
+                                 "longitude; choose another time",
+                                 -sky.sun_elevation));
+}
+
 Texture read_sky(const JsonNode& node) {
   const ObjectReader reader(node, "\"sky\"", sky_keys);
   Sky sky;
@@ -34,6 +65,12 @@ Texture read_sky(const JsonNode& node) {
   read("turbidity", least_turbidity, greatest_turbidity, sky.turbidity);
   read("sun_elevation", 0, 90, sky.sun_elevation);
   read("sun_azimuth", -360, 360, sky.sun_azimuth);
+  if (const JsonNode* time = time_of_sun(reader)) {
+    double latitude = 0, longitude = 0;
+    read("latitude", -90, 90, latitude);
+    read("longitude", -180, 180, longitude);
+    place_sun(*time, latitude, longitude, sky);
+  }
   if (const JsonNode* sun = reader.find("sun")) sky.sun = read_boolean(*sun, "\"sun\"");
   if (const JsonNode* ground = reader.find("ground"))
     sky.ground = read_color(*ground, "\"ground\"", unit_range);

@@ -16,8 +16,8 @@ void read_environment(const JsonNode& node, const std::filesystem::path& file, S
 // The keys that it, its "sky" and its "gradient" may have.
 inline const std::vector<std::string_view> environment_keys = {"radiance", "image", "sky",
                                                                "gradient", "scale", "rotation"};
-inline const std::vector<std::string_view> sky_keys = {"turbidity", "sun_elevation", "sun_azimuth", "sun",
-                                                       "ground"};
+inline const std::vector<std::string_view> sky_keys = {"turbidity", "sun_elevation", "sun_azimuth", "time",
+                                                       "latitude",  "longitude",     "sun",         "ground"};
 inline const std::vector<std::string_view> gradient_keys = {"zenith", "horizon", "ground"};
 
 }  // namespace castray

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "materials/media.h"
 #include "materials/texture.h"
 #include "scene/gltf_value.h"
 #include "scene/names.h"
@@ -197,16 +198,20 @@ class GltfMaterialReader {
                        share < glass_from ? "left out" : "taken for 1"));
     if (share < glass_from) return false;
     const tinygltf::Value* volume = find_extension(m_.extensions, "KHR_materials_volume");
-    if (find_value(volume, "attenuationDistance"))
-      warn("what glass absorbs on the way through it is left out");
     if (number_in(volume, "thicknessFactor", 0) > 0)
-      set_solid_glass();
+      set_solid_glass(volume);
     else
       set_thin_wall();
     return true;
   }
 
-  void set_solid_glass() {
+  void set_solid_glass(const tinygltf::Value* volume) {
+    const double distance = number_in(volume, "attenuationDistance", 0);
+    const Vec3d color = vector_in(volume, "attenuationColor", Vec3d(1));
+    // black would take an infinite coefficient
+    const auto clamped = [](double c) { return std::clamp(c, 1e-6, 1.0); };
+    if (distance > 0)
+      out_.absorption = absorption_of(Vec3d(clamped(color.x), clamped(color.y), clamped(color.z)), distance);
     out_.type = MaterialType::dielectric;
     out_.ior = ior();
     out_.transmittance = out_.kd;

@@ -7,6 +7,7 @@
 #include "core/nearest.h"
 #include "core/text.h"
 #include "materials/descriptor.h"
+#include "materials/media.h"
 #include "scene/file_finder.h"
 #include "scene/named_metals.h"
 
@@ -56,6 +57,7 @@ class MaterialReader {
  private:
   void read_key(const MaterialKey& key, const JsonNode& node) {
     const bool is_map = key.parameter && node.type == JsonNode::Type::object && !is_index(key, node);
+    if (key.name == "absorption" && node.type == JsonNode::Type::object) return read_absorption(node);
     if (key.kind == Kind::image_only || is_map)
       read_map(key, node);
     else
@@ -69,6 +71,14 @@ class MaterialReader {
       material_.*std::get<bool Material::*>(key.field) = read_boolean(node, name);
     else
       set_number(key, read_number(node, name, key.range));
+  }
+
+  /// By the colour that white light has after a distance.
+  void read_absorption(const JsonNode& node) {
+    const ObjectReader reader(node, "\"absorption\"", absorption_keys());
+    constexpr Range color{.least = 0, .greatest = 1, .above_least = true};
+    material_.absorption = absorption_of(read_color(reader.require("color"), "\"color\"", color),
+                                         read_number(reader.require("distance"), "\"distance\"", positive));
   }
 
   static bool is_reflectance(const MaterialKey& key) {
@@ -167,6 +177,11 @@ Material read_material(const JsonNode& node, const std::filesystem::path& file, 
 const std::vector<std::string_view>& map_keys() {
   static const std::vector<std::string_view> keys{"image",   "factor",      "scale", "offset", "clamp",
                                                   "channel", "color_space", "base",  "gain"};
+  return keys;
+}
+
+const std::vector<std::string_view>& absorption_keys() {
+  static const std::vector<std::string_view> keys{"color", "distance"};
   return keys;
 }
 

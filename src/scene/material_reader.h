@@ -16,6 +16,9 @@ Material read_material(const JsonNode& node, const std::filesystem::path& file, 
 /// The keys of an image that gives a parameter its value.
 const std::vector<std::string_view>& map_keys();
 
+/// The keys of what a dielectric absorbs, in place of its coefficients.
+const std::vector<std::string_view>& absorption_keys();
+
 /// The keys of a metal's complex index of refraction, in place of a reflectance.
 const std::vector<std::string_view>& index_keys();
 

@@ -299,6 +299,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"gradient", gradient_keys},
         {"map", map_keys()},
         {"index", index_keys()},
+        {"absorption", absorption_keys()},
         {"mesh", {"obj", "ply", "gltf", "material", "materials", "transform", "normals", "crease_angle"}},
         {"transform_step", transform_step_keys},
         {"instance", {"object", "transform", "transforms", "material"}},

@@ -70,6 +70,7 @@ void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
     store(paths.throughput, i, Vec{Float(1.f), Float(1.f), Float(1.f)});
     store(paths.arrival + i, Float(counts_all));
     store(paths.eta2 + i, Float(1.f));
+    store(paths.media + i, Uint(0u));
     store(paths.names.light_u + i, n.u[2]);
     store(paths.names.light_v + i, n.u[3]);
     store(paths.names.slot + i, entry);

@@ -11,6 +11,8 @@
 //   camera_rays -> Paths -> closest -> Hits -> surfaces -> Vertices -> light -> ShadowRays -> add_unblocked
 //                    ^                                        |
 //                    +------------------- scatter <-----------+
+//
+// Where glass absorbs, `absorb` dims the paths between closest and surfaces.
 
 namespace castray::CASTRAY_ISA {
 
@@ -45,6 +47,7 @@ CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t v
     scatter<features>(c, *current, vertex, roulette, s.paths);
     if (s.paths.count == 0) return;
     closest<Geometry>(c, s.paths, false, s.hits);
+    absorb<Geometry>(c, s.hits, false, s.paths);
     surfaces<Geometry, features, false>(c, s.paths, s.hits, may_find_lights, s.vertices, s.radiance);
     current = &s.vertices;
     if (chains) take_chain_ends(c, *current, *chains);

@@ -27,7 +27,10 @@ CASTRAY_INLINE void shadow_rays_of_glossy(const Context& c, const Vertices& y, P
     const Segment traced = to_trace(geometry_of<Geometry>(c), lights, segment, p, normal);
     compress_store(out.o, n, lit, traced.o);
     compress_store(out.d, n, lit, traced.d);
-    compress_store(out.radiance, n, lit, point.weight * segment.solid_angle);
+    Vec radiance = point.weight * segment.solid_angle;
+    if (c.scene.absorbing)
+      radiance = radiance * transmittance(c.scene, media_towards(c.scene, y, i, wi), point, segment);
+    compress_store(out.radiance, n, lit, radiance);
     compress_store(out.slot + n, lit, load(y.names.slot + i) + Uint(offset));
     out.count += count(lit);
     keep_of_suffixes(directions.w, y, i, wi);
@@ -79,6 +82,7 @@ CASTRAY_STAGE void scatter_glossy(const Context& c, const Vertices& y, Suffixes&
     compress_store(out.throughput, k, going, one);
     compress_store(out.arrival + k, going, Float(0.f));
     compress_store(out.eta2 + k, going, Float(1.f));
+    if (c.scene.absorbing) compress_store(out.media + k, going, load(y.media + i));
     compress_entries(out.names, k, going, y.names, i);
     compress_store(out.names.light_u + k, going, n.u[2]);
     compress_store(out.names.light_v + k, going, n.u[3]);

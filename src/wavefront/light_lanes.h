@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lights/light_share_lanes.h"
+#include "wavefront/absorption_lanes.h"
 #include "wavefront/light_points_lanes.h"
 #include "wavefront/shading_lanes.h"
 
@@ -41,7 +42,10 @@ CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, Poin
     }
     Float share(1.f);
     if (c.options.mis) share = light_share(light_density(lights, point, p, wi), pdf * segment.solid_angle);
-    const Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
+    Vec radiance = load(vertices.throughput, i) * f_cos * point.weight * (segment.solid_angle * share);
+    if constexpr (features & feature_materials)
+      if (c.scene.absorbing)
+        radiance = radiance * transmittance(c.scene, media_towards(c.scene, vertices, i, wi), point, segment);
     const Mask lit = first_lanes(vertices.count - i) & ~(max_component(radiance) <= Float(0.f));
     const int n = out.count;
     const Segment traced = to_trace(geometry_of<Geometry>(c), lights, segment, p, normal);

@@ -51,6 +51,7 @@ CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob
     compress_store(out.throughput, k, shines, emitted * (Float(1.f) / most));
     compress_store(out.arrival + k, shines, Float(0.f));
     compress_store(out.eta2 + k, shines, Float(1.f));
+    store(out.media + i, Uint(0u));
     compress_store(out.names.slot + k, shines, entry);
     compress_store(out.names.key + k, shines, Uint(key));
     compress_store(out.names.index + k, shines, index);
@@ -73,6 +74,7 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
   start_light_paths(c, job, s.paths, s.light_paths);
   for (uint32_t vertex = 1; s.paths.count > 0 && may_have_edges(options, vertex + 1); ++vertex) {
     closest<Geometry>(c, s.paths, false, s.hits);
+    absorb<Geometry>(c, s.hits, false, s.paths);
     surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance, true);
     if (vertex > 1) {
       CameraConnections& to = s.to_camera;

@@ -34,6 +34,7 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   else
     closest<Geometry>(c, s.paths, true, s.hits);
   if (first.t && !first.known) return keep_first_hits(first, result, s.paths.count, s.hits);
+  absorb<Geometry>(c, s.hits, false, s.paths);
   surfaces<Geometry, features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
   if (result.emitted[0]) copy_radiance(s.radiance, job.tiles * tile_pixels, result.emitted);
   keep_direct(c, s);

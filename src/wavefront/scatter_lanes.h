@@ -1,6 +1,6 @@
 #pragma once
 
-#include "wavefront/context_lanes.h"
+#include "wavefront/absorption_lanes.h"
 #include "wavefront/light_normals_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/shading_lanes.h"
@@ -97,6 +97,7 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
     compress_store(out.throughput, k, alive, throughput);
     compress_store(out.arrival + k, alive, arrival);
     compress_store(out.eta2 + k, alive, eta2);
+    if (c.scene.absorbing) compress_store(out.media + k, alive, media_towards(c.scene, vertices, i, wi));
     compress_entries(out.names, k, alive, vertices.names, i);
     compress_store(out.names.light_u + k, alive, n.u[2]);
     compress_store(out.names.light_v + k, alive, n.u[3]);

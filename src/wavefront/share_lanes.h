@@ -32,6 +32,7 @@ CASTRAY_STAGE void follow_glossy(Context& c, Scratch& s) {
   light_glossy<Geometry>(c, s.glossy, s.suffixes, s.shadow_rays, s.radiance);
   scatter_glossy<features>(c, s.glossy, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);
+  absorb<Geometry>(c, s.hits, false, s.paths);
   surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance);
   keep_found_light(c, features & feature_detail, s.paths, s.hits, s.vertices, s.suffixes);
   follow<Geometry, features>(c, s, s.vertices, 2, first_roulette_of_suffixes);
@@ -62,6 +63,7 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
   gather_environment<Geometry, features>(c, x, s.boxes, s.suffixes, s.paths, s.hits, s.visibility,
                                          s.gathered);
   if (direct) add_gathered_to_direct<features>(c, s);
+  absorb<Geometry>(c, s.hits, true, s.paths);
   surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.suffixes.y, s.radiance);
   keep_suffix_ends(c, features & feature_detail, s.suffixes);
   if (c.scene.lights.regions.tree) scale_light_density(c, s.paths.count, s.hits, s.lights, s.suffixes);

@@ -57,6 +57,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
       compress_store(out.throughput, k, going, one);
       compress_store(out.arrival + k, going, Float(0.f));
       compress_store(out.eta2 + k, going, Float(1.f));
+      if (c.scene.absorbing) compress_store(out.media + k, going, gather(x.media, entry));
       compress_store(out.names.slot + k, going, suffix + Uint((uint32_t)batch_size));
       compress_store(out.names.key + k, going, Uint(key));
       compress_store(out.names.index + k, going, index);

@@ -63,7 +63,7 @@ void keep_found_light(const Context& c, bool emission_varies, const Paths& rays,
     const EscapedLight sky = light_from(c.scene.lights.environment, wi);
     const Vec outside = select((sky.density > Float(0.f)) & Mask(c.options.mis), sky.radiance, black());
     const Vec emission = select(ends_leave_lamps(c, suffixes, z, i), black(), lamp.emission);
-    keep_of_suffixes(suffixes.found, z, i, select(escaped, outside, emission));
+    keep_of_suffixes(suffixes.found, z, i, select(escaped, outside, emission) * load(rays.throughput, i));
     keep_of_suffixes(suffixes.onward.pdf, z, i, select(escaped, sky.density, pdf));
   }
 }
@@ -72,9 +72,9 @@ void keep_found_light(const Context& c, bool emission_varies, const Paths& rays,
 CASTRAY_INLINE void make_private(const Vertices& x, const Suffixes& suffixes, Vertices& vertices, int k) {
   const uint32_t suffix = vertices.names.slot[k] - batch_size, origin = suffixes.origin[suffix];
   vertices.names.slot[k] = origin;
-  vertices.throughput.x[k] = suffixes.weight.x[suffix] * x.throughput.x[origin];
-  vertices.throughput.y[k] = suffixes.weight.y[suffix] * x.throughput.y[origin];
-  vertices.throughput.z[k] = suffixes.weight.z[suffix] * x.throughput.z[origin];
+  vertices.throughput.x[k] *= suffixes.weight.x[suffix] * x.throughput.x[origin];
+  vertices.throughput.y[k] *= suffixes.weight.y[suffix] * x.throughput.y[origin];
+  vertices.throughput.z[k] *= suffixes.weight.z[suffix] * x.throughput.z[origin];
 }
 
 void split_suffixes(const KernelScene& scene, const Vertices& x, Suffixes& suffixes, Vertices& glossy,

@@ -97,6 +97,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       compress_store(out.shading_normal, n, kept, shading_normal);
       compress_store(out.error + n, kept, x.error);
       compress_store(out.eta2 + n, kept, load(paths.eta2 + i));
+      if (scene.absorbing) compress_store(out.media + n, kept, load(paths.media + i));
     }
     const auto or_black = [&](Vec v) { return keep_misses ? select(hit, v, black()) : v; };
     compress_store(out.p, n, kept, or_black(fma(facing, x.error, x.p)));

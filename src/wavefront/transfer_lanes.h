@@ -1,5 +1,6 @@
 #pragma once
 
+#include "wavefront/absorption_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/gatherers_lanes.h"
 #include "wavefront/shading_lanes.h"
@@ -83,6 +84,20 @@ CASTRAY_INLINE void unoccluded_transfer(Context& c, const FarSender& y, const Ga
       const Mask lanes = by_bsdf<features>(c, tile, entry, normal);
       if (any(lanes)) transfer_by_bsdf<features>(c, tile, i, lanes, y.w, Float(1.f), t);
     }
+  }
+}
+
+/// Lengths of the segments between a sender and points.
+CASTRAY_INLINE Float distance_to(const Sender& y, const Vec& p) { return sqrt(length_squared(p - y.p)); }
+CASTRAY_INLINE Float distance_to(const FarSender&, const Vec&) { return Float(endless); }
+
+/// Absorption between a sender and the pixels of a tile.
+template <class AnySender>
+CASTRAY_INLINE void dim(const Context& c, const AnySender& y, const Gatherers& tile, Transfer& t) {
+  for (int i = 0; i < tile_vectors; ++i) {
+    const int entry = tile.first + i * width;
+    const Float distance = distance_to(y, load(tile.x.p, entry));
+    t.weight[i] = t.weight[i] * transmittance(c.scene, load(tile.x.media + entry), distance);
   }
 }
 

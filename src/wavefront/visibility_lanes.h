@@ -114,6 +114,8 @@ template <class Geometry, uint32_t features, class AnySender>
 CASTRAY_STAGE void transfer(Context& c, const AnySender& y, Gatherers& tile, VisibilityScratch& s,
                             Transfer& t) {
   unoccluded_transfer<features>(c, y, tile, t);
+  if constexpr (features & feature_materials)
+    if (c.scene.absorbing) dim(c, y, tile, t);
   hide_blocked<Geometry, features>(c, y, tile, s, t);
   c.rays += tile_pixels;
   c.gathered += tile_pixels;

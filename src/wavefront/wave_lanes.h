@@ -39,6 +39,7 @@ struct Paths {
   alignas(64) FloatArray arrival;  ///< pdf of the direction, for MIS, or counts_all; or 0: emission does not
                                    ///< count; negative: light paths bring that of lamps
   alignas(64) FloatArray eta2;     ///< product of eta^2 over refractions, for roulette
+  alignas(64) UintArray media;     ///< see absorption_lanes.h; only where a material absorbs
   PathNames names;
 };
 
@@ -75,6 +76,7 @@ struct VertexArrays {
   // Only where there are other materials than diffuse ones:
   VecArray<capacity> wo, shading_normal;
   alignas(64) FloatArray error, eta2;  ///< eta2 as in Paths
+  alignas(64) UintArray media;         ///< those that the path arrived through, as in Paths
 };
 struct Vertices : VertexArrays {
   int count = 0;

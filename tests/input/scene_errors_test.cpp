@@ -204,6 +204,25 @@ const std::vector<Case> cases = {
             R"(  "materials": { "a": { "type": "diffuse", "ke": { "eta": 1, "k": 2 } } },)",
             "s.json:2:52: unknown key 'eta' in \"ke\"; known: image, factor, scale, offset, clamp, channel, "
             "color_space, base, gain"),
+    in_line(
+        "glass that lets nothing pass",
+        R"(  "materials": { "a": { "type": "dielectric", "absorption": { "color": [0,1,1], "distance": 2 } } },)",
+        "s.json:2:73: \"color\"[0] must be greater than 0 and at most 1, not 0"),
+    in_line("what is left of light after no distance",
+            R"(  "materials": { "a": { "type": "dielectric", "absorption": { "color": 0.5 } } },)",
+            "s.json:2:61: \"absorption\" needs the key 'distance'"),
+    in_line(
+        "a sun that has set",
+        R"(  "environment": { "sky": { "time": "2024-06-21T23:30Z", "latitude": 40, "longitude": 0 } },)",
+        "s.json:2:37: the sun is 26.1 degrees below the horizon then, at this latitude and longitude; choose "
+        "another time"),
+    in_line("no time", R"(  "environment": { "sky": { "time": "noon", "latitude": 40, "longitude": 0 } },)",
+            "s.json:2:37: \"time\" is one from 1900 to 2100 as \"2024-06-21T12:00Z\" or "
+            "\"2024-06-21T14:00+02:00\""),
+    in_line(
+        "a sun by time and by angle",
+        R"(  "environment": { "sky": { "time": "2024-06-21T12:00Z", "sun_azimuth": 3, "latitude": 4, "longitude": 0 } },)",
+        "s.json:2:58: \"sun_azimuth\" or \"longitude\", not both: they place the sun"),
     in_line("a metal's name for a lamp", R"(  "materials": { "a": { "type": "diffuse", "ke": "gold" } },)",
             "s.json:2:50: \"ke\" must be an array of 3 numbers, not a string"),
     in_line("kd above 1", R"(  "materials": { "a": { "type": "diffuse", "kd": [1,1.5,1] } },)",

@@ -21,6 +21,7 @@ FOLDER = ROOT / "tests" / "golden" / "details"
 SIDE, BLOCK = 64, 4  # pixels
 FALSE_ALARM = 1e-3  # of a whole run
 SKY, LAMP = [0.3, 0.35, 0.4], [4.0, 3.5, 3.0]
+ABSORPTION = [0.2, 0.6, 1.0]  # of the glass, which is a block instead of a card
 
 # Mitsuba dims what bent normals reflect at grazing angles (Conty Estevez et al. 2019) unless told not to; castray does not.
 UNSHADOWED = {"use_shadowing_function": False, "flip_invalid_normals": False}
@@ -58,6 +59,15 @@ CASES = {
         "map_Kd colours.png\nPr .3\nPm 1\n",
         lambda: twosided({"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": 0.09,
                           "specular_reflectance": bitmap("colours.png")})),
+    "index": (
+        {"type": "conductor", "reflectance": {"eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0.8]}, "roughness": 0.5},
+        None,
+        lambda: twosided({"type": "roughconductor", "distribution": "ggx", "alpha": 0.25,
+                          "eta": {"type": "rgb", "value": [0.2, 0.9, 2.5]}, "k": {"type": "rgb", "value": [3.4, 1.5, 0.8]}})),
+    "glass": (
+        {"type": "dielectric", "ior": 1.5, "alpha": 0.3, "absorption": ABSORPTION},
+        None,
+        lambda: {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3, "int_ior": 1.5, "ext_ior": 1.0}),
 }
 
 
@@ -89,6 +99,8 @@ def write_images():
 def write_scene(name):
     material, mtl, _ = CASES[name]
     write_json(name, {"obj": "card.obj", "material": "card"}, {"card": material})
+    if mtl is None:
+        return
     (FOLDER / f"{name}.mtl").write_text(f"newmtl card\n{mtl}")
     (FOLDER / f"{name}.obj").write_text(f"mtllib {name}.mtl\nusemtl card\n{CARD}")
     write_json(f"{name}_mtl", {"obj": f"{name}.obj"}, {})
@@ -102,7 +114,9 @@ def write_json(name, card, materials):
         "materials": {**materials, "floor": {"type": "diffuse", "kd": floor(name)},
                       "lamp": {"type": "diffuse", "kd": [0, 0, 0], "ke": LAMP}},
         "meshes": [
-            {**card, "transform": [{"rotate": [1, 0, 0, -25]}, {"translate": [0, 1, 0]}]},
+            {**card, "transform": [{"rotate": [1, 0, 0, -25]}, {"translate": [0, 1, 0]}]} if name != "glass" else
+            {**card, "obj": "../../../models/shapes/cube.obj",
+             "transform": [{"scale": 0.6}, {"rotate": [0, 1, 0, 30]}, {"translate": [0, 0.8, 0]}]},
             {"obj": "card.obj", "material": "floor",
              "transform": [{"scale": 3}, {"rotate": [1, 0, 0, -90]}]},
             {"obj": "card.obj", "material": "lamp",
@@ -142,20 +156,26 @@ def diffuse(reflectance, factor):
 def mitsuba_scene(name):
     t = mi.ScalarTransform4f
 
-    def shape(bsdf, to_world, **more):
-        return {"type": "obj", "filename": str(FOLDER / "card.obj"), "face_normals": True, "to_world": to_world,
-                "bsdf": bsdf, **more}
+    def shape(bsdf, to_world, filename=FOLDER / "card.obj", **more):
+        return {"type": "obj", "filename": str(filename), "face_normals": True, "to_world": to_world, "bsdf": bsdf, **more}
+
+    def card():
+        if name != "glass":
+            return shape(CASES[name][2](), t().translate([0, 1, 0]).rotate([1, 0, 0], -25))
+        medium = {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb(ABSORPTION)}
+        return shape(CASES[name][2](), t().translate([0, 0.8, 0]).rotate([0, 1, 0], 30).scale(0.6),
+                     ROOT / "models/shapes/cube.obj", interior=medium)
 
     rgb = lambda value: {"type": "rgb", "value": value}
     return mi.load_dict({
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": -1},
+        "integrator": {"type": "volpathmis" if name == "glass" else "path", "max_depth": -1},
         "sensor": {"type": "perspective", "fov": 35, "fov_axis": "y",
                    "to_world": t().look_at(origin=[0, 1.5, 4.5], target=[0, 0.8, 0], up=[0, 1, 0]),
                    "film": {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}},
                    "sampler": {"type": "independent"}},
         "sky": {"type": "constant", "radiance": rgb(SKY)},
-        "card": shape(CASES[name][2](), t().translate([0, 1, 0]).rotate([1, 0, 0], -25)),
+        "card": card(),
         "floor": shape(plain(floor(name)), t().rotate([1, 0, 0], -90).scale(3)),
         "lamp": shape(plain([0, 0, 0]), t().translate([0.5, 3.2, 1]).rotate([1, 0, 0], 90),
                       emitter={"type": "area", "radiance": rgb(LAMP)})})

@@ -124,16 +124,20 @@ TEST_CASE("emission: factor, strength, image; on both sides where the material h
 }
 
 TEST_CASE("glass, clear coat, sheen, specular-glossiness and unlit") {
-  const Material glass =
-      material_of({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1, 1}}, {"roughnessFactor", 0}}},
-                   {"extensions",
-                    {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                     {"KHR_materials_volume", {{"thicknessFactor", 1}}},
-                     {"KHR_materials_ior", {{"ior", 1.33}}}}}});
+  const Material glass = material_of(
+      {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1, 1}}, {"roughnessFactor", 0}}},
+       {"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {1, 0.5, 0}}}},
+         {"KHR_materials_ior", {{"ior", 1.33}}}}}});
   CHECK(glass.type == MaterialType::dielectric);
   CHECK(glass.ior == 1.33);
   CHECK(glass.alpha == 0);
   CHECK(glass.transmittance == Vec3d(0.5, 1, 1));
+  CHECK(glass.absorption.x == Approx(0).margin(1e-12));
+  CHECK(glass.absorption.y == Approx(std::log(2.) / 2));
+  CHECK(glass.absorption.z > 5);
 
   GltfFile file;
   const int texture = file.add_texture(orm_texel);

@@ -214,6 +214,13 @@ TEST_CASE("a number stands for a grey, a metal's name for what it reflects strai
     CAPTURE(name);
     for (int c = 0; c < 3; ++c) CHECK(r[c] == Approx(m.reflectance[c]).margin(0.0011));
   }
+  // Glass: coefficients, or what is left after a distance.
+  CHECK(material(R"("type": "dielectric", "absorption": [1, 2, 0])").materials[0].absorption ==
+        Vec3d(1, 2, 0));
+  check_near(material(R"("type": "dielectric", "absorption": { "color": [0.25, 0.5, 1], "distance": 2 })")
+                 .materials[0]
+                 .absorption,
+             Vec3d(std::log(2.), std::log(2.) / 2, 0));
   CHECK(material(R"("type": "conductor", "multiple_scattering": true)").materials[0].multiple_scattering);
 }
 

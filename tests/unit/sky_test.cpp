@@ -7,6 +7,7 @@
 #include "castray/scene.h"
 #include "materials/environment_image.h"
 #include "scene/sky.h"
+#include "scene/sun_position.h"
 #include "temporary_folder.h"
 
 using namespace castray;
@@ -89,4 +90,36 @@ TEST_CASE("scene files have skies and gradients") {
   CHECK(sky.environment_image.rotation == 20);
   CHECK(scaled.environment.y == Approx(10 * sky.environment.y));
   CHECK(!sky.default_environment);
+}
+
+TEST_CASE("the sun stands where almanacs say") {
+  // Reda and Andreas 2008, NREL/TP-560-34302, appendix A.5: zenith angle 50.11162 with 0.0163 of refraction.
+  const double golden = days_of("2003-10-17T12:30:30-07:00").value();
+  const SunPosition sun = sun_position(golden, 39.742476, -105.1786);
+  CHECK(sun.elevation == Approx(39.872046).margin(0.01));
+  CHECK(sun.azimuth == Approx(194.34024).margin(0.015));
+  // Meeus, Astronomical Algorithms, example 25.a: declination -7.78507; from the poles it is the elevation.
+  const double october = days_of("1992-10-13T00:00Z").value();
+  CHECK(sun_position(october, 90, 0).elevation == Approx(-7.78507).margin(0.01));
+  CHECK(sun_position(october, -90, 33).elevation == Approx(7.78507).margin(0.01));
+  // The June solstice of 2024, 20:51 UTC; the equinox of March, 03:06 UTC.
+  CHECK(sun_position(*days_of("2024-06-20T20:51:00Z"), 90, 0).elevation == Approx(23.436).margin(0.01));
+  CHECK(sun_position(*days_of("2024-03-20T03:06:00Z"), 90, 0).elevation == Approx(0).margin(0.01));
+  // In the north at noon it is in the south, in the morning in the east, in the evening in the west.
+  CHECK(sun_position(*days_of("2024-06-21T12:02Z"), 51.48, 0).azimuth == Approx(180).margin(0.5));
+  CHECK(sun_position(*days_of("2024-06-21T06:00Z"), 51.48, 0).azimuth < 90);
+  CHECK(sun_position(*days_of("2024-06-21T18:00Z"), 51.48, 0).azimuth > 270);
+  CHECK(refraction(0) == Approx(0.48).margin(0.02));
+  CHECK(refraction(45) == Approx(1. / 60).margin(0.002));
+}
+
+TEST_CASE("times are those of ISO 8601") {
+  CHECK(days_of("2000-01-01T12:00Z") == 0);
+  CHECK(days_of("2000-01-02T14:00:00+02:00") == 1);
+  CHECK(days_of("1999-12-31T12:00:00Z") == -1);
+  for (const char* wrong : {"2000-01-01", "2000-13-01T00:00Z", "2023-02-29T00:00Z", "2000-01-01T12:00",
+                            "2000-01-01T12:60Z", "1850-01-01T12:00Z", "2000-01-01 12:00Z", ""}) {
+    CAPTURE(wrong);
+    CHECK_FALSE(days_of(wrong).has_value());
+  }
 }
