@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "castray/image.h"
 #include "castray/scene.h"
+#include "scene/material_writer.h"
 #include "temporary_folder.h"
 
 using namespace castray;
@@ -171,6 +173,31 @@ TEST_CASE("parameters of materials may be images") {
   CHECK(m.map(SurfaceParameter::normal).gain == 0.5f);
   CHECK(m.map(SurfaceParameter::coverage).base == 1);
   CHECK_FALSE(m.map(SurfaceParameter::alpha).used());
+}
+
+TEST_CASE("materials are written as they are read") {
+  for (const std::string keys :
+       {R"("type": "conductor", "reflectance": { "eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0] }, "alpha": 0.3)",
+        R"("type": "conductor", "reflectance": "gold", "roughness": 0.5, "multiple_scattering": true)",
+        R"("type": "dielectric", "ior": 1.3, "absorption": { "color": [0.3, 0.6, 1], "distance": 0.7 })"}) {
+    const auto read = [](const std::string& material) {
+      return load_text(R"({ "materials": { "m": )" + material +
+                       R"( }, "meshes": [ { "obj": "t.obj", "material": "m" } ] })");
+    };
+    const Scene scene = read("{" + keys + "}");
+    const Material& m = scene.materials[0];
+    const std::string written = material_json(m, scene, [](int) { return std::string(); }).dump();
+    const Material again = read(written).materials[0];
+    CAPTURE(written);
+    CHECK(again.type == m.type);
+    CHECK(again.alpha == m.alpha);
+    CHECK(again.ior == m.ior);
+    CHECK(again.eta == m.eta);
+    CHECK(again.k == m.k);
+    CHECK(again.reflectance.y == Approx(m.reflectance.y));
+    CHECK(again.absorption == m.absorption);
+    CHECK(again.multiple_scattering == m.multiple_scattering);
+  }
 }
 
 TEST_CASE("a number stands for a grey, a metal's name for what it reflects straight on") {
