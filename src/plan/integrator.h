@@ -26,6 +26,7 @@ struct BandWork {
   bool overlap = false;
   bool splats = false;  ///< the film must keep them; bands may add them anywhere, under locks of their own
   bool differences = false;  ///< the film must keep them
+  bool shared = false;  ///< pixels share paths: the error of a pixel's first samples tells little of more
   /// Adds those `samples` that the map wants to the film, for the band that starts at row y0 of the full
   /// image. Called by several threads at a time, for different bands.
   std::function<void(int y0, int y1, const SampleRange& samples, const SampleMap& map, Film& film,

@@ -79,7 +79,8 @@ class TargetRun {
     return true;
   }
 
-  /// Of two samples, taken one after the other, so that it tells at once how fast the noise falls.
+  /// Of two samples, taken one after the other, so that it tells at once how fast the noise falls. Shared
+  /// paths gain more by their second sample than by those after it.
   bool render_first_pilot() {
     SampleMap one(job_.window, {0, 1});
     if (!render_pilot(one, 0)) return false;
@@ -90,7 +91,7 @@ class TargetRun {
       stats_.pilot_paths = stats_.paths;
       if (stats_.stopped != Stopped::done) return false;
     }
-    first_fall_ = fall_from_first(pilots_[0], pilots_[1], first[0], first[1]);
+    if (!work_.shared) first_fall_ = fall_from_first(pilots_[0], pilots_[1], first[0], first[1]);
     return true;
   }
 

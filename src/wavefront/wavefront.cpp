@@ -383,10 +383,15 @@ class Wavefront final : public PreparedIntegrator {
   BandWork work(const Job& job) const override {
     const auto run = std::make_shared<WavefrontRun>(scene_, kernel_, data_, plan_, job);
     const int top = job.window.y0;
-    return {
-        tile_size, true, traces_light_paths(job.options, plan_), keeps_differences(job.options, plan_),
-        [run, top](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film,
-                   RowStats& stats) { run->render_band((y0 - top) / tile_size, samples, map, film, stats); }};
+    return {.height = tile_size,
+            .overlap = true,
+            .splats = traces_light_paths(job.options, plan_),
+            .differences = keeps_differences(job.options, plan_),
+            .shared = plan_.suffixes > 0,
+            .render = [run, top](int y0, int, const SampleRange& samples, const SampleMap& map, Film& film,
+                                 RowStats& stats) {
+              run->render_band((y0 - top) / tile_size, samples, map, film, stats);
+            }};
   }
 
   /// Instruction sets count rays differently in the last digit, so a near tie may fall either way.
