@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "cli/tool_main.h"
+#include "instanced.h"
 #include "stress_checks.h"
 #include "wavefront/choose_kernel.h"
 
@@ -78,6 +79,18 @@ void test_leaks_of_lists(Table& table, const ClosedShape& closed, double scale, 
   }
 }
 
+/// The mesh as an instance, by transforms of all kinds.
+void test_leaks_of_instances(Table& table, const ClosedShape& closed, std::size_t count, int threads) {
+  const FloatMesh mesh = place(closed.shape, 0.5);
+  const auto rays = rays_at_seams<float>(closed, mesh, 0.5, 0, count, 4);
+  for (const Transform& at : kinds_of_places())
+    for (const KernelApi* kernel : available_kernels()) {
+      const auto tracer = make_instance_tracer(mesh.view(), *kernel, at);
+      tracer->build(threads);
+      table.add("leaks, " + closed.name, tracer->name(), 0.5, 0, count, count_leaks(*tracer, rays));
+    }
+}
+
 void test_agreement(Table& table, const std::string& name, const Shape& shape, double scale, double offset,
                     std::size_t count, int threads) {
   const FloatMesh mesh = place(shape, scale, offset);
@@ -109,6 +122,7 @@ bool run_all(std::size_t count, int threads) {
   for (const ClosedShape& closed :
        {closed_icosphere(32), closed_torus_knot(600, 16), closed_sliver_sphere(200, 50)}) {
     test_leaks(table, closed, 1, 0, count, threads);
+    test_leaks_of_instances(table, closed, count / 10, threads);
     for (const double scale : {1e-6, 1e-4, 1e-2, 1e2, 1e4, 1e6})
       test_leaks(table, closed, scale, 0, count / 10, threads);
     // Beyond, float moves the knot's vertices by more than its tube is wide.

@@ -4,8 +4,10 @@
 
 #include "castray/error.h"
 #include "geometry/facets.h"
+#include "geometry/instance_bvh.h"
 #include "geometry/list.h"
 #include "geometry/wide_bvh.h"
+#include "instanced.h"
 #include "scene/scene_builder.h"
 #include "wavefront/choose_kernel.h"
 
@@ -96,6 +98,36 @@ class FacetTracer : public Tracer {
   std::optional<FacetsInDouble> exact_;
 };
 
+/// The mesh as an only instance.
+class InstanceTracer : public Tracer {
+ public:
+  InstanceTracer(const MeshView& mesh, const KernelApi& kernel, const Transform& place)
+      : mesh_(mesh), kernel_(kernel), place_(place) {}
+
+  std::string name() const override { return std::string("instance ") + kernel_.name; }
+  BvhStats build(int threads) override {
+    scene_ = as_instances(scene_of(mesh_), {place_});
+    tree_.emplace(InstanceBvh::build(scene_, threads, BuildQuality::fast));
+    return tree_->stats();
+  }
+  void closest(const RayArrays& rays, std::size_t first, std::size_t count, Hit<float>* hits) const override {
+    rays.closest([&](const RayBatch& batch) { kernel_.instances_closest(tree_->view(), batch); }, first,
+                 count, hits);
+  }
+  void occluded(const RayArrays& rays, std::size_t first, std::size_t count,
+                std::uint8_t* occluded) const override {
+    rays.occluded([&](const ShadowBatch& batch) { kernel_.instances_occluded(tree_->view(), batch); }, first,
+                  count, occluded);
+  }
+
+ private:
+  MeshView mesh_;
+  const KernelApi& kernel_;
+  Transform place_;
+  Scene scene_;
+  std::optional<InstanceBvh> tree_;
+};
+
 /// Bvh or TriangleList: one ray at a time, in plain C++.
 template <class Accelerator>
 class PlainTracer : public Tracer {
@@ -131,8 +163,14 @@ std::unique_ptr<Tracer> make_tracer(const std::string& accel, const MeshView& me
                                     BuildQuality quality) {
   if (accel == "bvh2") return std::make_unique<PlainTracer<Bvh>>(mesh);
   if (accel == "facets") return std::make_unique<FacetTracer>(mesh, kernel);
+  if (accel == "instance") return make_instance_tracer(mesh, kernel, kinds_of_places().front());
   if (accel == "list") return std::make_unique<PlainTracer<TriangleList>>(mesh);
   return std::make_unique<WideTracer>(mesh, kernel, quality);
+}
+
+std::unique_ptr<Tracer> make_instance_tracer(const MeshView& mesh, const KernelApi& kernel,
+                                             const Transform& place) {
+  return std::make_unique<InstanceTracer>(mesh, kernel, place);
 }
 
 std::vector<const KernelApi*> available_kernels() {

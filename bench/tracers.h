@@ -7,6 +7,7 @@
 #include "castray/render.h"
 #include "geometry/bvh.h"
 #include "geometry/ray_arrays.h"
+#include "scene/transform.h"
 #include "wavefront/kernel_api.h"
 
 namespace castray {
@@ -24,10 +25,14 @@ class Tracer {
                         std::uint8_t* occluded) const = 0;
 };
 
-/// `accel`: wide, bvh2, list, or facets, which tells whether something is hit but not which triangle;
-/// `kernel` is for wide and facets, `quality` for wide.
+/// `accel`: wide, bvh2, list, instance, a turned one, or facets, which tells whether something is hit but not
+/// which triangle; `kernel` is for all but bvh2 and list, `quality` for wide.
 std::unique_ptr<Tracer> make_tracer(const std::string& accel, const MeshView& mesh, const KernelApi& kernel,
                                     BuildQuality quality = BuildQuality::fast);
+
+/// The mesh as an instance that such a transform has put where it is.
+std::unique_ptr<Tracer> make_instance_tracer(const MeshView& mesh, const KernelApi& kernel,
+                                             const Transform& place);
 
 /// The kernels that this processor can run.
 std::vector<const KernelApi*> available_kernels();

@@ -162,6 +162,8 @@ TEST_CASE("of two spheres, one shining away from the other, no light reaches the
 }
 
 TEST_CASE("no light passes a sealed shell that is an instance") {
+  const std::vector<Transform> places = kinds_of_places();
+  std::size_t next = 0;
   for (const Shell& shell : shells())
     for (const Material& material : {white, black, air}) {
       SceneSketch sketch;
@@ -171,13 +173,12 @@ TEST_CASE("no light passes a sealed shell that is an instance") {
       sketch.add_mesh(shell.shape.positions, shell.shape.triangles, 0.3, {0.1, 0.2, 0.05}, false, around);
       sketch.add_mesh(shell.shape.positions, shell.shape.triangles, 0.29, {0.1, 0.2, 0.05}, false, inner);
       look(sketch.scene, {0.1, 0.2, 0.1}, {0.3, 0.1, -0.2});
-      for (const Transform& place : kinds_of_places()) {
-        const Scene scene = as_instances(sketch.scene, {place, place});
-        for (const Way& way : every_way(small(4))) {
-          if (way.options.accel == AccelKind::list) continue;
-          CAPTURE(shell.name, material.name, way.name);
-          CHECK(lit_pixels(scene, way.options) == 0);
-        }
+      const Transform& place = places[next++ % places.size()];
+      const Scene scene = as_instances(sketch.scene, {place, place});
+      for (const Way& way : every_way(small(4))) {
+        if (way.options.accel == AccelKind::list) continue;
+        CAPTURE(shell.name, material.name, way.name);
+        CHECK(lit_pixels(scene, way.options) == 0);
       }
     }
 }

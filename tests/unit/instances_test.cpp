@@ -13,6 +13,7 @@
 #include "integrators.h"
 #include "stress_checks.h"
 #include "temporary_folder.h"
+#include "test_scenes.h"
 
 using namespace castray;
 
@@ -156,12 +157,8 @@ struct Pair {
 };
 
 Pair pair_of(const FloatMesh& mesh, const Transform& place) {
-  Scene flat;
-  flat.positions = mesh.positions;
-  flat.triangles = mesh.triangles;
-  flat.materials.emplace_back();
-  flat.triangle_material.assign(mesh.triangles.size(), 0);
-  return {flat, test::as_instances(flat, {place})};
+  const Scene flat = scene_of(mesh.view());
+  return {flat, as_instances(flat, {place})};
 }
 
 std::vector<Hit<float>> closest(const KernelApi& kernel, const InstanceBvh& tree, const RayArrays& rays) {
@@ -185,7 +182,7 @@ TEST_CASE("no ray leaves a closed mesh that is an instance, through seams or els
        {closed_icosphere(5), closed_sliver_sphere(10, 3), closed_torus_knot(60, 8)}) {
     const FloatMesh mesh = place(closed.shape, 0.5);
     const std::vector<Ray<float>> at_seams = rays_at_seams<float>(closed, mesh, 0.5, 0, 2000, 5);
-    for (const Transform& at : test::kinds_of_places()) {
+    for (const Transform& at : kinds_of_places()) {
       const Pair scenes = pair_of(mesh, at);
       const InstanceBvh tree = InstanceBvh::build(scenes.instanced, 1, BuildQuality::fast);
       const SceneBvh binary = SceneBvh::build(scenes.instanced, 1);
@@ -239,7 +236,7 @@ TEST_CASE("rays meet instances where they meet the flattened mesh in double") {
     ray.origin = point();
     ray.direction = point();
   }
-  for (const Transform& at : test::kinds_of_places()) {
+  for (const Transform& at : kinds_of_places()) {
     const Pair scenes = pair_of(mesh, at);
     const Bvh flat = Bvh::build(mesh_of(scenes.flat), 1);
     const InstanceBvh tree = InstanceBvh::build(scenes.instanced, 1, BuildQuality::fast);
@@ -267,7 +264,7 @@ TEST_CASE("rays meet instances where they meet the flattened mesh in double") {
 TEST_CASE(
     "kernels of the same arithmetic find the same hits on instances, whatever the threads of the build") {
   const Scene flat = test::standard_scene("cornell_obj");
-  const Scene scene = test::as_instances(flat, test::kinds_of_places());
+  const Scene scene = as_instances(flat, kinds_of_places());
   const RayArrays rays(rays_around(FloatMesh{flat.positions, flat.triangles}, 3000, 7));
   const InstanceBvh tree = InstanceBvh::build(scene, 1, BuildQuality::fast),
                     other = InstanceBvh::build(scene, 3, BuildQuality::best);

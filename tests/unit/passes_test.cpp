@@ -182,8 +182,8 @@ TEST_CASE("instances have the passes of the same surfaces in scene space") {
   const Scene flat = castray::test::with_detail(looking_along_z(std::move(sketch)));
   const std::initializer_list<Pass> set = {Pass::albedo, Pass::normal, Pass::depth, Pass::position};
   const Passes expected = render(flat, set, options_of());
-  for (const Transform& place : castray::test::kinds_of_places()) {
-    const Passes found = render(castray::test::as_instances(flat, {place}), set, options_of());
+  for (const Transform& place : castray::kinds_of_places()) {
+    const Passes found = render(castray::as_instances(flat, {place}), set, options_of());
     REQUIRE(found.channels.size() == expected.channels.size());
     for (std::size_t c = 0; c < found.channels.size(); ++c)
       for (std::size_t i = 0; i < side * side; ++i)

@@ -1,16 +1,14 @@
-#pragma once
+#include "instanced.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <vector>
 
-#include "scene/transform.h"
-#include "test_scenes.h"
+namespace castray {
 
-namespace castray::test {
+namespace {
 
-inline Transform inverse_of(const Transform& t) {
+Transform inverse_of(const Transform& t) {
   const double determinant = t.determinant();
   const Vec3d c[3] = {cross(t.rows[1], t.rows[2]) / determinant, cross(t.rows[2], t.rows[0]) / determinant,
                       cross(t.rows[0], t.rows[1]) / determinant};
@@ -19,20 +17,10 @@ inline Transform inverse_of(const Transform& t) {
   return inverse;
 }
 
-/// Transforms of all kinds: turned, far smaller, stretched, mirrored.
-inline std::vector<Transform> kinds_of_places() {
-  return {Transform::rotate({1, 2, 3}, 50).then(Transform::translate({0.1, -0.2, 0.3})),
-          Transform::scale(Vec3d(1e-3)).then(Transform::rotate({3, -1, 0}, 200)),
-          Transform::scale({4, 0.5, 1}).then(Transform::rotate({0, 1, 1}, 20)),
-          Transform::scale({-2, 2, 2})
-              .then(Transform::rotate({1, 0, 1}, 110))
-              .then(Transform::translate({0.7, 0, 0}))};
-}
-
 /// Puts triangles first .. first + count - 1 of a scene, the next behind its objects, into an object that one
 /// instance shows where they were. `place` maps the object's space to the scene's but for its size and
 /// middle.
-inline void make_instance(Scene& scene, std::uint32_t first, std::uint32_t count, const Transform& place) {
+void make_instance(Scene& scene, std::uint32_t first, std::uint32_t count, const Transform& place) {
   const Transform back = inverse_of(place);
   std::vector<Vec3d> points;
   Vec3d low(1e300), high(-1e300);
@@ -69,8 +57,21 @@ inline void make_instance(Scene& scene, std::uint32_t first, std::uint32_t count
   scene.instances.push_back(instance);
 }
 
-/// The same scene with all that does not emit as instances, one at each place.
-inline Scene as_instances(const Scene& flat, const std::vector<Transform>& places) {
+}  // namespace
+
+std::vector<Transform> kinds_of_places() {
+  return {Transform::rotate({1, 2, 3}, 50).then(Transform::translate({0.1, -0.2, 0.3})),
+          Transform::scale(Vec3d(1e-3)).then(Transform::rotate({3, -1, 0}, 200)),
+          Transform::scale({4, 0.5, 1}).then(Transform::rotate({0, 1, 1}, 20)),
+          Transform::scale({-2, 2, 2})
+              .then(Transform::rotate({1, 0, 1}, 110))
+              .then(Transform::translate({0.7, 0, 0})),
+          Transform::scale({1, 2, 0.7})
+              .then(Transform::rotate({2, 1, 0}, 40))
+              .then(Transform::scale({1500, -1000, 1000}))};
+}
+
+Scene as_instances(const Scene& flat, const std::vector<Transform>& places) {
   std::vector<std::uint32_t> order(flat.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto is_own = [&](std::uint32_t t) { return flat.material_of(t).emits(); };
@@ -96,4 +97,15 @@ inline Scene as_instances(const Scene& flat, const std::vector<Transform>& place
   return scene;
 }
 
-}  // namespace castray::test
+Scene scene_of(const MeshView& mesh) {
+  Scene scene;
+  scene.triangles.assign(mesh.triangles, mesh.triangles + mesh.count);
+  std::uint32_t corners = 0;
+  for (const Index3& t : scene.triangles) corners = std::max({corners, t[0] + 1, t[1] + 1, t[2] + 1});
+  scene.positions.assign(mesh.positions, mesh.positions + corners);
+  scene.materials.emplace_back();
+  scene.triangle_material.assign(mesh.count, 0);
+  return scene;
+}
+
+}  // namespace castray
