@@ -11,6 +11,7 @@ inline constexpr float hull_slack = 0x1p-20f;
 /// A convex region around the hull of an apex and a box: its bounds, and for each pair of axes the two lines
 /// from the apex that touch the box. A point p is outside if plane . p > most.
 struct Hull {
+  float origin[3];  ///< all else is relative to it
   float low[3], high[3];
   int planes = 0;
   struct Plane {
@@ -63,13 +64,13 @@ CASTRAY_INLINE Hull make_hull(const FarApex& apex, const float* low, const float
   return hull;
 }
 
-/// Which children's boxes meet the hull, whose origin is at `origin`.
-CASTRAY_INLINE uint32_t children_in_hull(const WideNode& node, const float* origin, const Hull& hull) {
+/// Which children's boxes meet the hull.
+CASTRAY_INLINE uint32_t children_in_hull(const WideNode& node, const Hull& hull) {
   F8 low[3], high[3];
   uint32_t inside = 0xff;
   for (int a = 0; a < 3; ++a) {
-    low[a] = load8(node.lower[a]) - splat8(origin[a]);
-    high[a] = load8(node.upper[a]) - splat8(origin[a]);
+    low[a] = load8(node.lower[a]) - splat8(hull.origin[a]);
+    high[a] = load8(node.upper[a]) - splat8(hull.origin[a]);
     inside &= both_less8<true>(low[a], splat8(hull.high[a]) + splat8(hull_slack),
                                splat8(hull.low[a]) - splat8(hull_slack), high[a]);
   }
@@ -82,15 +83,18 @@ CASTRAY_INLINE uint32_t children_in_hull(const WideNode& node, const float* orig
   return inside;
 }
 
-/// Of an apex, whose `origin` is given, and a box.
+/// Of an apex and a box.
 template <class Apex>
-CASTRAY_INLINE Hull hull_of(const Apex& apex, const float* origin, const Box& box) {
+CASTRAY_INLINE Hull hull_of(const Apex& apex, const Box& box) {
+  const float origin[3] = {lane(apex.origin.x, 0), lane(apex.origin.y, 0), lane(apex.origin.z, 0)};
   float low[3], high[3];
   for (int a = 0; a < 3; ++a) {
     low[a] = box.center[a] - box.half[a] - origin[a];
     high[a] = box.center[a] + box.half[a] - origin[a];
   }
-  return make_hull(apex, low, high);
+  Hull hull = make_hull(apex, low, high);
+  for (int a = 0; a < 3; ++a) hull.origin[a] = origin[a];
+  return hull;
 }
 
 }  // namespace castray::CASTRAY_ISA

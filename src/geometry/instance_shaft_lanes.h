@@ -6,8 +6,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// As triangle_shaft, of the triangles in scene space. False also if the shaft may meet any other instance:
-/// then rays must tell. `there`: as for instances_closest.
+/// As triangle_shaft, of all that instances show and what is in scene space. `there`: as for
+/// instances_closest.
 template <class Apex>
 bool instance_shaft(const InstanceTree& tree, const PartlyThere* there, const Apex& apex, const Box& box,
                     ShaftBudget& budget, Shaft& out);
