@@ -86,6 +86,13 @@ struct SceneInstance {
   bool mirrors() const { return dot(Vec3d(rows[0]), cross(Vec3d(rows[1]), Vec3d(rows[2]))) < 0; }
 };
 
+/// One of the cameras that a scene's files have.
+struct SceneCamera {
+  std::string name;
+  Camera camera;              ///< in scene space
+  int width = 0, height = 0;  ///< the image size that goes with it; 0: the scene's
+};
+
 /// A scene, an immutable value once loaded.
 ///
 /// Geometry lives in *scene space*: the input is parsed in double, moved so that the middle of its bounds is
@@ -95,9 +102,10 @@ struct Scene {
   std::string name;            ///< file name without its suffix
   std::filesystem::path file;  ///< as the user gave it
 
-  Camera camera;                  ///< in scene space
-  bool has_camera = false;        ///< its files say which; else it is `automatic_camera`
-  int width = 784, height = 784;  ///< image size in pixels
+  Camera camera;                     ///< in scene space
+  bool has_camera = false;           ///< its files say which; else it is `automatic_camera`
+  int width = 784, height = 784;     ///< image size in pixels
+  std::vector<SceneCamera> cameras;  ///< all that its files have, `camera` the first; by names of their own
 
   Vec3d center{0, 0, 0};
   double unit = 1;  ///< a power of two

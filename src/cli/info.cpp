@@ -132,6 +132,8 @@ void print_scene_info(const std::string& file, const CommonFlags& common) {
   fmt::print("image      {} x {}\n", scene.width, scene.height);
   fmt::print("view       {}\n           {}\n", view_flags(scene, scene.camera),
              view_json(scene, scene.camera));
+  for (std::size_t i = 0; i < scene.cameras.size() && scene.cameras.size() > 1; ++i)
+    fmt::print("camera {:<3} {}\n", i, printable(scene.cameras[i].name));
   print_materials(scene);
   print_plan(scene);
   if (common.quiet) return;

@@ -1,5 +1,10 @@
 #include "cli/render_flags.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -123,6 +128,8 @@ const RenderFlag flags[] = {
     {"size", "WxH", "image size in pixels [scene's]", image, set_size},
     {"crop", "X0,Y0,X1,Y1", "the window x0 <= x < x1, y0 <= y < y1 only, as an image of its own size", image,
      set_crop, false},
+    {"camera", "NAME|INDEX", "which of the scene's cameras, by name or counted from 0 [the first]", view,
+     [](Request r, Text, Text t) { r.scene.camera.name = t; }, false},
     {"look-from", "X,Y,Z", "where the camera is", view,
      [](Request r, Text f, Text t) { r.scene.camera.position = parse_vector(f, t); }, false},
     {"look-at", "X,Y,Z", "where it looks [the scene's middle]", view,
@@ -284,6 +291,25 @@ PreparedScene prepare(const Scene& scene, const RenderRequest& request) {
 
 namespace {
 
+/// Makes the camera of that name, or else of that number, the scene's.
+void choose_camera(const std::string& wanted, Scene& scene) {
+  const auto named = std::ranges::find(scene.cameras, wanted, &SceneCamera::name);
+  std::size_t i = static_cast<std::size_t>(named - scene.cameras.begin());
+  if (named == scene.cameras.end() && !wanted.empty() &&
+      std::ranges::all_of(wanted, [](unsigned char c) { return std::isdigit(c); }))
+    std::from_chars(wanted.data(), wanted.data() + wanted.size(), i);
+  if (i >= scene.cameras.size()) {
+    std::vector<std::string> names;
+    for (const SceneCamera& camera : scene.cameras) names.push_back(printable(camera.name));
+    throw InputError(
+        fmt::format("--camera {}: {} has no such camera; {}", printable(wanted), scene.file.string(),
+                    names.empty() ? "it has none" : fmt::format("it has {}", fmt::join(names, ", "))));
+  }
+  const SceneCamera& chosen = scene.cameras[i];
+  scene.camera = chosen.camera;
+  if (chosen.width > 0) scene.width = chosen.width, scene.height = chosen.height;
+}
+
 /// The scene's camera, or the one that the flags describe. The image's size is final.
 Camera camera_of(const CameraFlags& given, const Scene& scene) {
   if (!given.position && !given.look_at && !given.up && !given.fov)
@@ -304,6 +330,7 @@ void apply_flags(const RenderRequest& request, Scene& scene) {
   const SceneFlags& flags = request.scene;
   if (flags.strict && !scene.warnings.empty())
     throw InputError(scene.warnings.front().place, scene.warnings.front().message);
+  if (flags.camera.name) choose_camera(*flags.camera.name, scene);
   if (request.options.width > 0) scene.width = request.options.width, scene.height = request.options.height;
   scene.camera = camera_of(flags.camera, scene);
   if (flags.environment) {

@@ -20,6 +20,7 @@ enum class ProgressMode : unsigned char { automatic, bar, lines, json, off };
 
 /// A view given by flags; what is missing is the scene's.
 struct CameraFlags {
+  std::optional<std::string> name;  ///< or number, of one of the scene's
   std::optional<Vec3d> position, look_at, up;
   std::optional<double> fov;
 };

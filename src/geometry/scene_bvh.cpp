@@ -47,8 +47,8 @@ SceneBvh SceneBvh::build(const Scene& scene, int threads) {
   SceneBvh all(Bvh::build(mesh_of(scene), threads));
   if (scene.instances.empty()) return all;
   for (const SharedMesh& mesh : scene.shared_meshes) {
-    const BvhStats& more =
-        all.meshes_.emplace_back(Bvh::build(mesh_of(scene, mesh), threads), mesh.first).bvh.stats();
+    all.meshes_.push_back({Bvh::build(mesh_of(scene, mesh), threads), mesh.first});
+    const BvhStats& more = all.meshes_.back().bvh.stats();
     all.stats_.triangles += more.triangles;
     all.stats_.nodes += more.nodes;
     all.stats_.bytes += more.bytes;

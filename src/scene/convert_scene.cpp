@@ -32,7 +32,7 @@ struct Source {
   Scene scene;
   std::string mesh_key;                              ///< "gltf", "obj" or "ply"
   std::map<std::string, std::uint16_t> materials;    ///< by their names in the mesh's file
-  Json camera, lights;                               ///< as the file has them; empty: it has none
+  Json cameras, lights;                              ///< as the file has them, by name; empty: it has none
   std::function<std::string(int)> embedded_image{};  ///< its encoded bytes
 };
 
@@ -44,7 +44,8 @@ Source read_gltf_source(const GltfDocument& document, WarningList warnings) {
       }};
   for (std::size_t m = 0; m < source.scene.materials.size(); ++m)
     source.materials[source.scene.materials[m].name] = static_cast<std::uint16_t>(m);
-  if (!nodes.cameras.empty()) source.camera = camera_json(document, nodes.cameras.front());
+  for (const std::string& name : camera_names(document, nodes))
+    source.cameras[name] = camera_json(document, nodes.cameras[source.cameras.size()]);
   WarningList told;  // by scene_of_gltf
   for (const GltfPlaced& light : nodes.lights) source.lights.push_back(light_json(document, light, told));
   return source;
@@ -60,9 +61,7 @@ Source read_mesh_source(const fs::path& file, const std::string& key,
   MeshOptions options;
   for (std::size_t i = 0; i < indices.size(); ++i) options.materials[mesh.materials[i].name] = indices[i];
   builder.add(make_mesh(std::move(mesh), options, materials), file);
-  Source source{builder.finish(), key, options.materials, {}, {}};
-  source.scene.camera = automatic_camera(source.scene);
-  return source;
+  return {builder.finish(), key, options.materials, {}, {}};
 }
 
 /// The view that was found for a file without camera.
@@ -99,7 +98,10 @@ class SceneWriter {
   SceneFiles write() {
     const Scene& scene = source_.scene;
     Json json;
-    json["camera"] = source_.camera.empty() ? view_json(scene) : source_.camera;
+    if (source_.cameras.size() > 1)
+      json["cameras"] = source_.cameras;
+    else
+      json["camera"] = source_.cameras.empty() ? view_json(scene) : source_.cameras.front();
     json["image"] = {{"width", scene.width}, {"height", scene.height}};
     if (scene.default_environment) json["environment"] = {{"radiance", {1, 1, 1}}};
     if (!source_.lights.empty()) json["lights"] = source_.lights;

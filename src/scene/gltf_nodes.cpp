@@ -9,6 +9,7 @@
 #include "castray/error.h"
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_value.h"
+#include "scene/names.h"
 
 namespace castray {
 
@@ -203,6 +204,16 @@ Json camera_json(const GltfDocument& document, const GltfPlaced& camera) {
     json["fov"] = degrees(c.perspective.yfov);
   }
   return json;
+}
+
+std::vector<std::string> camera_names(const GltfDocument& document, const GltfNodes& nodes) {
+  std::vector<std::string> names;
+  for (const GltfPlaced& camera : nodes.cameras) {
+    const std::string &of_node = document.model.nodes[camera.node].name,
+                      &own = document.model.cameras[camera.object].name;
+    names.push_back(!of_node.empty() ? of_node : !own.empty() ? own : "camera");
+  }
+  return without_repeats(std::move(names));
 }
 
 double aspect_of(const GltfDocument& document, const GltfPlaced& camera) {

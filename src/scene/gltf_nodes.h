@@ -25,6 +25,9 @@ GltfNodes place_nodes(const GltfDocument& document);
 /// "camera" of a scene file for a camera. Throws InputError where it defines no view.
 nlohmann::ordered_json camera_json(const GltfDocument& document, const GltfPlaced& camera);
 
+/// The names of cameras: their node's, else their own, else "camera"; of equal ones the later are numbered.
+std::vector<std::string> camera_names(const GltfDocument& document, const GltfNodes& nodes);
+
 /// Width over height of a camera's image; 0 where the file leaves it open.
 double aspect_of(const GltfDocument& document, const GltfPlaced& camera);
 

@@ -125,17 +125,13 @@ Scene scene_of_gltf(const GltfDocument& document, const GltfNodes& nodes, Warnin
   for (const GltfPlaced& light : nodes.lights)
     builder.scene.delta_lights.push_back(
         read_delta_light(parsed(light_json(document, light, builder.warnings), document)));
-  std::optional<Camera> camera;
-  if (!nodes.cameras.empty()) {
-    camera = read_camera(parsed(camera_json(document, nodes.cameras.front()), document));
-    const auto [width, height] =
-        size_of_aspect(aspect_of(document, nodes.cameras.front()), default_longest_side);
-    builder.scene.width = width, builder.scene.height = height;
+  std::vector<SceneCamera>& cameras = builder.scene.cameras;
+  for (const std::string& name : camera_names(document, nodes)) {
+    const GltfPlaced& placed = nodes.cameras[cameras.size()];
+    const auto [width, height] = size_of_aspect(aspect_of(document, placed), default_longest_side);
+    cameras.push_back({name, read_camera(parsed(camera_json(document, placed), document)), width, height});
   }
-  Scene scene = builder.finish();
-  scene.has_camera = camera.has_value();
-  scene.camera = camera ? scene.to_scene(*camera) : automatic_camera(scene);
-  return scene;
+  return builder.finish();
 }
 
 }  // namespace castray

@@ -13,7 +13,7 @@ namespace castray {
 void add_gltf(const GltfDocument& document, const MeshOptions& options, const Transform& transform,
               SceneBuilder& builder, std::optional<std::size_t> object = {});
 
-/// The scene of the file alone: its meshes, lights and first camera, which are in `nodes`.
+/// The scene of the file alone: its meshes, lights and cameras, which are in `nodes`.
 Scene scene_of_gltf(const GltfDocument& document, const GltfNodes& nodes, WarningList warnings);
 
 /// The size of an image of width over height `aspect`, whose longer side is `longest` pixels.

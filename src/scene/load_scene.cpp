@@ -23,9 +23,7 @@ Scene scene_of_mesh(const std::filesystem::path& file, const std::function<ObjFi
   builder.scene.name = file.stem().string();
   ObjMaterials materials(builder);
   builder.add(make_mesh(read(builder.warnings), {}, materials), file);
-  Scene scene = builder.finish();
-  scene.camera = automatic_camera(scene);
-  return scene;
+  return builder.finish();
 }
 
 Scene load_gltf(std::string_view bytes, const std::filesystem::path& file) {

@@ -399,6 +399,17 @@ void SceneBuilder::drop_flat() {
   keep_triangles(mesh_, keep);
 }
 
+/// The first camera is the scene's.
+void SceneBuilder::place_cameras() {
+  for (SceneCamera& camera : scene.cameras) camera.camera = scene.to_scene(camera.camera);
+  scene.has_camera = !scene.cameras.empty();
+  if (scene.has_camera && scene.cameras.front().width > 0) {
+    scene.width = scene.cameras.front().width;
+    scene.height = scene.cameras.front().height;
+  }
+  scene.camera = scene.has_camera ? scene.cameras.front().camera : automatic_camera(scene);
+}
+
 Scene SceneBuilder::finish() {
   make_objects_of_materials();
   expand_instances();
@@ -433,6 +444,7 @@ Scene SceneBuilder::finish() {
   for (DeltaLight& light : scene.delta_lights) light = scene.to_scene(light);
   scene.default_environment = scene.lights.empty() && scene.delta_lights.empty() && !environment_given;
   if (scene.default_environment) scene.environment = Vec3d(1);
+  place_cameras();
   return std::move(scene);
 }
 

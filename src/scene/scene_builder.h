@@ -28,7 +28,7 @@ enum class Instancing : std::uint8_t { automatic, expand, keep };
 /// Gathers a scene's meshes in double, and moves them into scene space at the end.
 class SceneBuilder {
  public:
-  Scene scene;  ///< all but what `finish` fills in: geometry, lights, warnings, the camera's place
+  Scene scene;  ///< all but what `finish` fills in; cameras and lights without size are in the world
   Instancing instancing = Instancing::automatic;  ///< automatic: kept where there are many triangles
   bool environment_given = false;                 ///< else, where nothing emits, the scene gets a white one
   WarningList warnings;
@@ -60,8 +60,8 @@ class SceneBuilder {
   /// Adds an instance of an object, all of the given material if there is one.
   void place(std::size_t object, const Transform& transform, std::optional<std::uint16_t> material = {});
 
-  /// Drops degenerate triangles and fills in geometry, center, unit, lights and warnings. Throws InputError
-  /// where no triangle is left.
+  /// Drops degenerate triangles and fills in geometry, center, unit, lights, warnings and the camera. Throws
+  /// InputError where no triangle is left.
   Scene finish();
 
  private:
@@ -88,6 +88,7 @@ class SceneBuilder {
   void drop_flat();  ///< of those that rounding has made flat, too
   void keep_triangles(Mesh& mesh, const std::vector<bool>& keep);
   void require_triangles() const;
+  void place_cameras();
 
   Mesh mesh_;  ///< what is no object's; in the end, everything
   std::vector<Mesh> objects_;

@@ -78,16 +78,9 @@ class SceneFileReader {
     if (const JsonNode* lights = scene.find("lights"))
       for (const JsonNode& light : read_array(*lights, "\"lights\""))
         builder_.scene.delta_lights.push_back(read_delta_light(light));
-    const JsonNode* camera = scene.find("camera");
-    if (camera) builder_.scene.camera = read_camera(*camera);
+    read_cameras(scene);
     read_geometry(scene);
-    Scene result = builder_.finish();
-    result.has_camera = camera;
-    if (camera)
-      result.camera = result.to_scene(result.camera);
-    else
-      result.camera = automatic_camera(result);
-    return result;
+    return builder_.finish();
   }
 
  private:
@@ -101,6 +94,17 @@ class SceneFileReader {
     if (static_cast<long long>(scene.width) * scene.height > max_image_pixels)
       throw InputError(node.place, fmt::format("{} x {} pixels are too many; at most {} in all", scene.width,
                                                scene.height, max_image_pixels));
+  }
+
+  void read_cameras(const ObjectReader& scene) {
+    const JsonNode *one = scene.find("camera"), *several = scene.find("cameras");
+    if (one && several) throw InputError(several->key_place, "give \"camera\" or \"cameras\", not both");
+    if (one) builder_.scene.cameras.push_back({"camera", read_camera(*one)});
+    if (!several) return;
+    if (several->type != JsonNode::Type::object || several->children.empty())
+      throw InputError(several->place, "\"cameras\" must be an object of at least one camera");
+    for (const JsonNode& member : several->children)
+      builder_.scene.cameras.push_back({member.key, read_camera(member)});
   }
 
   void read_render(const JsonNode& node) {
@@ -288,8 +292,8 @@ const std::vector<SceneSection>& scene_sections() {
   static const std::vector<SceneSection> sections = [] {
     std::vector<SceneSection> all = {
         {"scene",
-         {"$schema", "camera", "image", "render", "materials", "meshes", "objects", "instances", "instancing",
-          "lights", "environment"}},
+         {"$schema", "camera", "cameras", "image", "render", "materials", "meshes", "objects", "instances",
+          "instancing", "lights", "environment"}},
         {"camera", camera_keys},
         {"light", light_keys},
         {"lens", lens_keys},
