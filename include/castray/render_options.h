@@ -62,8 +62,9 @@ struct RenderOptions {
   bool generic = false;
   Reuse reuse;
   /// Whether the film keeps differences, from which its image is reconstructed (`image_of`). `automatic`:
-  /// where paths are shared and lamps alone shine; not with target error or replicates. `on`: shares paths.
-  Switch reconstruct = Switch::off;
+  /// where paths are shared and a pilot finds that it pays; not with target error or replicates. `on`: shares
+  /// paths.
+  Switch reconstruct = Switch::automatic;
   std::optional<double> time_limit;  ///< seconds; every pixel gets a sample, however long that takes
   /// An early stop comes at the end of a pass over the image, so that the film can be resumed. Else it comes
   /// at once, and some rows have a sample or some more than others. A pass takes about a second, or one

@@ -172,8 +172,9 @@ const RenderFlag flags[] = {
      estimator, [](Request r, Text f, Text t) { r.options.caustics = parse_choice(f, t, switch_names); }},
     {"reuse", "auto|off|WxH:N", "share N path suffixes in tiles of WxH pixels [auto]", estimator, set_reuse},
     {"reconstruct", "auto|on|off",
-     "the image from means and differences of pixels that share paths, unbiased [off]", estimator,
-     [](Request r, Text f, Text t) { r.options.reconstruct = parse_choice(f, t, switch_names); }},
+     "the image from means and differences of pixels that share paths, unbiased [auto: where a pilot "
+     "finds that it pays]",
+     estimator, [](Request r, Text f, Text t) { r.options.reconstruct = parse_choice(f, t, switch_names); }},
     {"clamp-indirect", "X|off",
      "scale a sample's indirect light down to X: fewer bright dots, but biased [off]", estimator,
      [](Request r, Text f, Text t) {

@@ -26,7 +26,7 @@ constexpr struct {
     {"lights by area", "--lights area"},      {"no MIS", "--mis off"},
     {"MIS everywhere", "--mis on"},           {"fixed roulette 0.8", "--rr 0.8"},
     {"one lane (scalar)", "--isa scalar"},    {"BVH also for few triangles", "--accel bvh"},
-    {"every feature (generic)", "--generic"},
+    {"every feature (generic)", "--generic"}, {"means alone", "--reconstruct off"},
 };
 
 std::filesystem::path default_cache() {

@@ -149,6 +149,7 @@ std::string film_key(const SceneFacts& scene, const Job& job) {
                    : fmt::format("{}x{}:{}", o.reuse.width, o.reuse.height, o.reuse.suffixes));
   if (o.camera) add("view", fmt::format("{:016x}", view_hash(*o.camera)));
   if (o.caustics != Switch::automatic) add("caustics", name_in(switch_names, o.caustics));
+  if (o.reconstruct != Switch::automatic) add("reconstruct", name_in(switch_names, o.reconstruct));
   if (o.clamp_indirect) add("clamp-indirect", *o.clamp_indirect);
   if (o.target_error) add("target-error", *o.target_error);
   if (job.fault != Fault::none) add("fault", name_in(fault_names, job.fault));

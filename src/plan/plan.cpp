@@ -62,6 +62,10 @@ std::string kernel_name(const Plan& plan) {
   if (plan.gain_of_light_paths > 0)
     name += fmt::format("{} (by a pilot, paths from lights are {:.2g} times as efficient)",
                         plan.light_paths ? "" : ", caustics by chance", plan.gain_of_light_paths);
+  if (plan.suffixes > 0 && plan.gain_of_reconstruction > 0)
+    name +=
+        fmt::format(", image from {} (by a pilot, differences are {:.2g} times as efficient at 4 samples)",
+                    plan.reconstruct ? "differences of pixels" : "means", plan.gain_of_reconstruction);
   return name + (plan.mis ? ", MIS" : "");
 }
 
@@ -80,7 +84,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
-  plan.lamps_alone = !needs.environment;
+  plan.reconstruct = options.reconstruct != Switch::off;
   plan.environment_points = needs.environment && scene.environment_image.used() ? 16 : 0;
   plan.mis = uses_mis(options.mis, scene, std::max(1.0, double(plan.suffixes) / plan.light_points));
   plan.light_paths = may_have_light_paths(needs) && options.caustics != Switch::off;
@@ -110,9 +114,8 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
 }
 
 bool keeps_differences(const RenderOptions& options, const Plan& plan) {
-  const bool wanted =
-      options.reconstruct == Switch::on || (options.reconstruct == Switch::automatic && plan.lamps_alone);
-  return wanted && plan.suffixes > 0 && !options.target_error && options.max_depth != 1;
+  return options.reconstruct != Switch::off && plan.reconstruct && plan.suffixes > 0 &&
+         !options.target_error && options.max_depth != 1;
 }
 
 void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain) {
@@ -124,6 +127,12 @@ void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain) {
 void choose_caustics(Plan& plan, double gain_of_light_paths) {
   plan.light_paths = gain_of_light_paths >= 1;
   plan.gain_of_light_paths = gain_of_light_paths;
+  plan.kernel = kernel_name(plan);
+}
+
+void choose_reconstruction(Plan& plan, std::optional<double> gain) {
+  plan.gain_of_reconstruction = gain.value_or(0);
+  plan.reconstruct = plan.gain_of_reconstruction > 1;
   plan.kernel = kernel_name(plan);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,22 +20,22 @@ struct Plan {
   int light_points = 0;                      ///< shared by each tile
   int environment_points = 0;                ///< likewise
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
-  bool lamps_alone = false;                  ///< no light comes from outside the scene
-  std::size_t light_regions = 0;             ///< from which it is known what lights are seen; 0: it is not
-  double gain_of_regions = 1;               ///< how many times smaller they make a light sample's mean square
-  bool lights_by_solid_angle = false;       ///< points on them, where that can be had
+  bool reconstruct = false;            ///< if paths are shared, films keep what images are reconstructed from
+  std::size_t light_regions = 0;       ///< from which it is known what lights are seen; 0: it is not
+  double gain_of_regions = 1;          ///< how many times smaller they make a light sample's mean square
+  bool lights_by_solid_angle = false;  ///< points on them, where that can be had
   BuildQuality build = BuildQuality::fast;  ///< of the tree
   double gain_of_light_paths = 0;           ///< over chance, as a pilot saw it; 0: none was asked
+  double gain_of_reconstruction = 0;        ///< over means, likewise
   std::string kernel;                       ///< what was chosen, readable
   std::vector<std::string> skipped;         ///< what the scene does not need
 };
 
-/// For an image of the window's full size. Automatic sharing is on here; a pilot may take it back
-/// (choose_by_pilot).
+/// For an image of the window's full size. Automatic sharing and reconstruction are on here; a pilot may take
+/// them back (choose_by_pilot, choose_reconstruction).
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
 
-/// Whether films keep what images are reconstructed from. `Switch::automatic`: where paths are shared and
-/// light comes from lamps alone. Under a sky, what a tile's paths share has little noise of its own.
+/// Whether the films of this render keep what images are reconstructed from.
 bool keeps_differences(const RenderOptions& options, const Plan& plan);
 
 /// Lets the choice of lights know what is seen from regions, by which light samples have a mean square that
@@ -44,6 +45,10 @@ void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain);
 /// Takes what does better, if light paths make a render that many times as efficient as leaving their
 /// caustics to chance.
 void choose_caustics(Plan& plan, double gain_of_light_paths);
+
+/// Keeps reconstruction if it is more efficient than means, that many times by a pilot; nothing if none was
+/// asked.
+void choose_reconstruction(Plan& plan, std::optional<double> gain);
 
 /// Takes what does better, if shared paths are that many times as efficient as plain ones, and says so in
 /// Plan::kernel.

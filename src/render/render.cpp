@@ -29,7 +29,8 @@ const char* misfit(const Job& job, const Job& prepared) {
   if (a.build != b.build) return "--build";
   if (a.generic != b.generic) return "--generic";
   if (a.reuse != b.reuse) return "--reuse";
-  if ((a.reconstruct == Switch::on) != (b.reconstruct == Switch::on)) return "--reconstruct";
+  if (a.reconstruct != b.reconstruct && (a.reconstruct != Switch::off || b.reconstruct == Switch::on))
+    return "--reconstruct";
   return nullptr;
 }
 

@@ -20,11 +20,13 @@ struct Gains {
   std::optional<double>
       sharing_by_lights;  ///< of shared over plain paths, with caustics by paths from lights
   std::optional<double> sharing_by_chance;  ///< the same with caustics by chance
+  /// Of images from differences of pixels over those from means, at few samples and with shared paths.
+  std::optional<double> reconstruction_by_lights, reconstruction_by_chance;
 };
 
 /// Which choices are open. Others are as in the options.
 struct OpenChoices {
-  bool caustics, sharing;
+  bool caustics = false, sharing = false, reconstruction = false;
 };
 
 /// Tries shared and plain paths, with caustics by light paths and by chance, as far as that is open.

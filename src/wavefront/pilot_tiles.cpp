@@ -122,6 +122,25 @@ double relative_error(const TileRun& run, std::size_t count, const Vec3d& bright
   return error * double(count) / double(means * tile_pixels);
 }
 
+/// Half of the error of differences of neighbours: as that of pixels if their noise is their own.
+double difference_error(const TileRun& run, const Vec3d& brightness) {
+  constexpr int pairs = 2 * tile_size * (tile_size - 1);
+  double error = 0;
+  for (const int step : {1, tile_size}) {  // to the right, below
+    TileRun differences;
+    for (std::size_t r = 0; r < replicates; ++r)
+      for (std::size_t s = 0; s < samples; ++s)
+        for (int i = 0; i + step < tile_pixels; ++i) {
+          const TilePixels& pixels = run.sample[r][s];
+          const auto here = static_cast<std::size_t>(i), there = static_cast<std::size_t>(i + step);
+          const bool last_column = step == 1 && there % tile_size == 0;
+          if (!last_column) differences.sample[r][s][here] = pixels[there] - pixels[here];
+        }
+    error += relative_error(differences, samples, brightness);
+  }
+  return error / 2 * tile_pixels / pairs;
+}
+
 /// Errors are relative to what the techniques make of the tile on average.
 std::vector<TechniqueFigures> try_tile(const Pilot& pilot, const std::vector<KernelOptions>& techniques,
                                        const Tile& tile) {
@@ -137,11 +156,24 @@ std::vector<TechniqueFigures> try_tile(const Pilot& pilot, const std::vector<Ker
     brightness += mean_of_tile(runs.back()) / double(techniques.size());
   }
   std::vector<TechniqueFigures> figures;
-  for (const TileRun& run : runs)
-    figures.push_back({mean_of_tile(run), relative_error(run, samples, brightness),
-                       relative_error(run, 1, brightness),
+  for (const TileRun& run : runs) {
+    const double error = relative_error(run, samples, brightness);
+    figures.push_back({mean_of_tile(run), error, relative_error(run, 1, brightness),
+                       error > 0 ? difference_error(run, brightness) / error : 0,
                        run.cost / double(replicates * samples * tile_pixels)});
+  }
   return figures;
+}
+
+/// Of technique k; see TechniqueFigures.
+double own_share(const std::vector<std::vector<TechniqueFigures>>& by_tile, std::size_t k) {
+  double error = 0, own = 0, worst = 0;
+  for (const auto& tile : by_tile) {
+    error += tile[k].error;
+    own += tile[k].error * tile[k].own_share;
+    worst = std::max(worst, tile[k].error);
+  }
+  return error > 0 ? (own + worst) / (error + worst) : 1;
 }
 
 /// Of each technique the tile with the greatest error: a single bright sample that any of them might have met
@@ -161,8 +193,9 @@ std::vector<TechniqueFigures> try_techniques(const Pilot& pilot,
   std::vector<std::vector<TechniqueFigures>> by_tile(tiles.size());
 #pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
   for (std::size_t i = 0; i < tiles.size(); ++i) by_tile[i] = try_tile(pilot, techniques, tiles[i]);
-  leave_out_worst(by_tile);
   std::vector<TechniqueFigures> means(techniques.size());
+  for (std::size_t k = 0; k < means.size(); ++k) means[k].own_share = own_share(by_tile, k);
+  leave_out_worst(by_tile);
   const double share = 1.0 / static_cast<double>(by_tile.size());
   for (const std::vector<TechniqueFigures>& tile : by_tile)  // in their order, whatever the threads
     for (std::size_t k = 0; k < means.size(); ++k) {

@@ -375,9 +375,10 @@ class Wavefront final : public PreparedIntegrator {
       as_pilot([&] { learn_lights(scene, job); });
     const OpenChoices open{
         .caustics = job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_),
-        .sharing =
-            plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on};
-    if (open.caustics || open.sharing) as_pilot([&] { choose_techniques(job, open); });
+        .sharing = plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on,
+        .reconstruction =
+            job.options.reconstruct == Switch::automatic && keeps_differences(job.options, plan_)};
+    if (open.caustics || open.sharing || open.reconstruction) as_pilot([&] { choose_techniques(job, open); });
   }
 
   BandWork work(const Job& job) const override {
@@ -398,7 +399,7 @@ class Wavefront final : public PreparedIntegrator {
   std::string decisions(const Job& job) const override {
     std::string items = plan_.light_paths ? "; light-paths=on" : "";
     items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
-    if (keeps_differences(job.options, plan_)) items += "; reconstruct=on";
+    if (keeps_differences(job.options, plan_)) items += "; differences=on";
     if (plan_.light_regions > 0) items += "; light-choice=learned";
     return items;
   }
@@ -467,8 +468,11 @@ class Wavefront final : public PreparedIntegrator {
     const Gains gains =
         find_gains(jobs.pilot(job), kernel_options(job.options, plan_, false), open, jobs.light_paths());
     if (gains.light_paths) choose_caustics(plan_, *gains.light_paths);
-    const std::optional<double>& sharing =
-        traces_light_paths(job.options, plan_) ? gains.sharing_by_lights : gains.sharing_by_chance;
+    const bool by_lights = traces_light_paths(job.options, plan_);
+    if (open.reconstruction)
+      choose_reconstruction(plan_,
+                            by_lights ? gains.reconstruction_by_lights : gains.reconstruction_by_chance);
+    const std::optional<double>& sharing = by_lights ? gains.sharing_by_lights : gains.sharing_by_chance;
     if (open.sharing && sharing) choose_by_pilot(plan_, *sharing);
   }
 

@@ -22,7 +22,7 @@ TEST_CASE("a render that needs the whole film is refused before its memory is ta
   for (const std::vector<std::string>& whole :
        {std::vector<std::string>{"-o", "x.film"}, {"--checkpoint", "c.film"}, {"--time-limit", "9"}}) {
     const TemporaryFolder folder;
-    std::vector<std::string> words{"--size", "16384x16384", "--memory-limit", "2G"};
+    std::vector<std::string> words{"--size", "16384x16384", "--memory-limit", "2G", "--reconstruct", "off"};
     words.insert(words.end(), whole.begin(), whole.end());
     const RunResult result = render(folder, words);
     CHECK(result.exit_code == 2);
@@ -39,10 +39,11 @@ TEST_CASE("an image whose film does not fit is rendered in bands, to the same by
   for (const char* scene : {"cornell_box", "cornell_conductor"}) {
     const TemporaryFolder folder;
     const auto image = [&](const std::string& name, std::vector<std::string> more) {
-      std::vector<std::string> words{"render",    std::string(CASTRAY_ROOT "/scenes/") + scene + ".json",
-                                     "--size",    "500x301",
-                                     "--spp",     "2",
-                                     "--threads", "1"};
+      std::vector<std::string> words{"render",        std::string(CASTRAY_ROOT "/scenes/") + scene + ".json",
+                                     "--size",        "500x301",
+                                     "--spp",         "2",
+                                     "--threads",     "1",
+                                     "--reconstruct", "off"};
       for (const char* suffix : {".ppm", ".png", ".pfm", ".hdr", ".exr"})
         more.insert(more.end(), {"-o", name + suffix});
       words.insert(words.end(), more.begin(), more.end());
@@ -84,7 +85,7 @@ TEST_CASE("an interrupt in a band leaves no file, and says so") {
   const TemporaryFolder folder;
   const RunResult result =
       run_castray({"render", CASTRAY_ROOT "/scenes/cornell_box.json", "--size", "512x512", "--spp", "1000000",
-                   "--threads", "1", "--memory-limit", "22M", "-o", "x.png"},
+                   "--threads", "1", "--memory-limit", "22M", "--reconstruct", "off", "-o", "x.png"},
                   RunSettings{.folder = folder.path(), .signal = SIGINT});
   CHECK(result.exit_code == 130);
   CHECK_THAT(result.err, Contains("whole or not at all"));
@@ -102,8 +103,8 @@ TEST_CASE("a band of an image that is too large renders within the limit") {
 
 TEST_CASE("what goes beyond the limit while it renders is one line, not a killed process") {
   const TemporaryFolder folder;
-  const RunResult result = render(
-      folder, {"--size", "1024x1024", "--memory-limit", "68M", "--threads", "4", "-o", "x.film", "-q"});
+  const RunResult result = render(folder, {"--size", "1024x1024", "--memory-limit", "68M", "--threads", "4",
+                                           "--reconstruct", "off", "-o", "x.film", "-q"});
   CHECK(result.exit_code == 2);
   CHECK(result.error_lines() == 1);
   CHECK_THAT(result.err, Contains("memory"));

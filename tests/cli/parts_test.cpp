@@ -59,7 +59,8 @@ TEST_CASE("merge adds any number of films in less memory than one of them takes,
     Words words{"render", CASTRAY_ROOT "/scenes/cornell_conductor.json",
                 "--size", "512x1024",
                 "-q",     "--threads",
-                "1",      "-o",
+                "1",      "--reconstruct",
+                "off",    "-o",
                 name};
     words.insert(words.end(), more.begin(), more.end());
     REQUIRE(run_castray(words, folder.path()).exit_code == 0);
@@ -94,7 +95,8 @@ TEST_CASE("merge adds any number of films in less memory than one of them takes,
 
 TEST_CASE("merge adds 300 films with the memory of a few") {
   const TemporaryFolder folder;
-  REQUIRE(render(folder, {"--size", "256x256", "--samples", "0:1", "-o", "p.film"}).exit_code == 0);
+  REQUIRE(render(folder, {"--size", "256x256", "--samples", "0:1", "--reconstruct", "off", "-o", "p.film"})
+              .exit_code == 0);
   const Film first = read_film(folder / "p.film");
   Words names;
   for (std::uint64_t i = 0; i < 300;

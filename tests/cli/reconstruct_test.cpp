@@ -13,7 +13,7 @@ namespace {
 const std::string box = CASTRAY_ROOT "/scenes/cornell_box.json";
 
 Words render(const Words& more) {
-  Words words = {"render", box, "-q", "--size", "48x40", "--seed", "3", "--reconstruct", "auto"};
+  Words words = {"render", box, "-q", "--size", "48x40", "--seed", "3", "--reconstruct", "on"};
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
@@ -48,13 +48,34 @@ TEST_CASE("without reconstruction a film has no differences, and an image is the
     return std::filesystem::file_size(folder / "a.film");
   };
   constexpr std::size_t pixels = 48 * 40;
-  CHECK(size_of({"--reconstruct", "auto"}) > 220 * pixels);
   const std::string outdoors = CASTRAY_ROOT "/scenes/kinds/sky_and_ground.json";
+  CHECK(size_of({"--reconstruct", "on"}) > 220 * pixels);
   CHECK(size_of({"--reconstruct", "on"}, outdoors) > 220 * pixels);
-  CHECK(size_of({"--reconstruct", "auto"}, outdoors) < 53 * pixels + 1000);
-  for (const Words& plain :
-       {Words{}, Words{"--reconstruct", "auto", "--reuse", "off"}, Words{"--reconstruct", "off"}})
+  for (const Words& plain : {Words{}, Words{"--reuse", "off"}, Words{"--reconstruct", "off"}})
     CHECK(size_of(plain) < 53 * pixels + 1000);
+}
+
+TEST_CASE("by default the box is reconstructed, parts and resumed renders too, which the log tells") {
+  const TemporaryFolder folder;
+  const auto run = [&](const Words& more) {
+    Words words = {"render", box, "--size", "192x192"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_castray(words, folder.path());
+  };
+  const RunResult whole = run({"--spp", "4", "-o", "a.pfm", "-o", "a.film"});
+  CHECK_THAT(whole.err, Catch::Contains("image from differences of pixels (by a pilot"));
+  CHECK_THAT(run_castray({"info", "a.film"}, folder.path()).out, Catch::Contains("means and differences"));
+  REQUIRE(run({"--spp", "4", "-q", "--reconstruct", "off", "-o", "off.pfm"}).exit_code == 0);
+  CHECK(read_file(folder / "off.pfm") != read_file(folder / "a.pfm"));
+  REQUIRE(run({"--spp", "4", "-q", "--part", "0/2", "-o", "p{part}.film"}).exit_code == 0);
+  REQUIRE(run({"--spp", "4", "-q", "--part", "1/2", "-o", "p{part}.film"}).exit_code == 0);
+  REQUIRE(
+      run_castray({"merge", "p0.film", "p1.film", "-o", "m.film", "-o", "m.pfm"}, folder.path()).exit_code ==
+      0);
+  CHECK(read_file(folder / "m.film") == read_file(folder / "a.film"));
+  CHECK(read_file(folder / "m.pfm") == read_file(folder / "a.pfm"));
+  REQUIRE(run({"--spp", "2", "-q", "--replicates", "2", "-o", "r.film"}).exit_code == 0);
+  CHECK_THAT(run_castray({"info", "r.film"}, folder.path()).out, !Catch::Contains("means and differences"));
 }
 
 TEST_CASE("reconstruction is refused where there is nothing to reconstruct from") {

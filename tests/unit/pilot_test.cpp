@@ -197,6 +197,70 @@ TEST_CASE("the pilot does not depend on threads or seed, and small or dark image
   CHECK_FALSE(gain_of_sharing(sharing(), 200, 136, 1, pretended(0, 0, 0, 1000, 1000)));
 }
 
+namespace {
+
+/// Pixels of 1 and noise, of which `alike` is the same for all of a tile and the rest each pixel's own. In
+/// the column of tiles in the middle all is their own, and so many times as large.
+RenderJob partly_alike(float alike, float in_the_middle, std::uint64_t rays_of_pixel) {
+  return [=](const KernelOptions& options, const TileJob& job, TileResult& result) {
+    const bool middle = in_the_middle > 0 && job.x == 256;
+    const float shared = middle ? 0 : 0.1f * alike, own = middle ? 0.1f * in_the_middle : 0.1f - shared;
+    for (std::uint32_t i = 0; i < tile_pixels; ++i)
+      for (std::uint32_t c = 0; c < 3; ++c)
+        result.radiance[c][i] = options.max_depth == 1 ? 0
+                                                       : 1 + shared * noise(options.seed, job, 0, c) +
+                                                             own * noise(options.seed, job, i, 3 + c);
+    result.rays += rays_of_pixel * tile_pixels;
+  };
+}
+
+double gain_of_reconstruction(const RenderJob& job, bool list = true) {
+  return *find_gains({512, 512, list, 2, job}, sharing(), {.reconstruction = true}, {})
+              .reconstruction_by_chance;
+}
+
+}  // namespace
+
+TEST_CASE("to the pilot, differences pay where neighbours' noise is alike, not if it is their own") {
+  CHECK(gain_of_reconstruction(partly_alike(0.95f, 0, 20)) > 1.5);
+  CHECK(gain_of_reconstruction(partly_alike(0.75f, 0, 20)) > 1.2);
+  CHECK(gain_of_reconstruction(partly_alike(0.4f, 0, 20)) < 1);
+  CHECK(gain_of_reconstruction(partly_alike(0, 0, 20)) == Approx(20 / (20 + 1 + 13 / 4.0)));
+}
+
+TEST_CASE("to the pilot, differences do not pay where samples cost little, or few tiles hold the noise") {
+  CHECK(gain_of_reconstruction(partly_alike(0.95f, 0, 1)) < 1);
+  CHECK(gain_of_reconstruction(partly_alike(0.95f, 0, 1), false) > 1);  // rays over a tree cost more
+  CHECK(gain_of_reconstruction(partly_alike(0.95f, 10, 20)) < 1);
+}
+
+TEST_CASE("whether an image is reconstructed is chosen alike for all parts of it, and never for few tiles") {
+  RenderOptions options;
+  options.width = options.height = 192;
+  options.spp = 1;
+  const auto kept = [](const Scene& scene, const RenderOptions& o) {
+    const Film film = render(scene, o).film;
+    CHECK(film.differences().kept() == (film.key.find("; differences=on") != std::string::npos));
+    return film.differences().kept();
+  };
+  const Scene box = standard_scene("cornell_box"), outdoors = standard_scene("kinds/sky_and_ground");
+  CHECK(kept(box, options));
+  CHECK_FALSE(kept(outdoors, options));
+  options.crop = Window{.x0 = 20, .y0 = 30, .x1 = 33, .y1 = 41};
+  options.samples = SampleRange{5, 1};
+  options.threads = 3;
+  options.seed = 9;
+  CHECK(kept(box, options));
+  CHECK_FALSE(kept(outdoors, options));
+  options.target_error = 0.1;
+  options.samples.reset();
+  CHECK_FALSE(kept(box, options));
+  RenderOptions small;
+  small.width = small.height = 32;
+  small.spp = 4;
+  CHECK_FALSE(kept(box, small));
+}
+
 TEST_CASE(
     "between mirrors paths are plain by default, in the box they are shared, whatever part is rendered") {
   RenderOptions options;

@@ -134,7 +134,7 @@ TEST_CASE("another view of a prepared scene is the image of a scene prepared for
 
 TEST_CASE("the film of a part of the window goes on as a crop does") {
   for (const char* name : {"cornell_box", "cornell_conductor"})
-    for (const Switch reconstruct : {Switch::off, Switch::automatic}) {
+    for (const Switch reconstruct : {Switch::off, Switch::on}) {
       const Scene scene = standard_scene(name);
       RenderOptions options = options_of(Integrator::wavefront);
       options.reconstruct = reconstruct;
