@@ -13,7 +13,8 @@ struct NoiseTest {
   bool paired = false;    ///< replicates of one seed were compared pairwise
   double p = 1;           ///< smallest p-value, corrected for the number of tests (Bonferroni), at most 1
   bool differs() const { return p < alpha; }
-  double rms_t = 0;  ///< root mean square of t over blocks of 8x8 pixels and channels; about 1 for noise alone
+  double rms_t =
+      0;  ///< root mean square of t over blocks of 8x8 pixels and channels; about 1 for noise alone
 
   // Where p is smallest:
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< pixels of the full image

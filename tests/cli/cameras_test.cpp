@@ -36,7 +36,7 @@ std::string image_of(const TemporaryFolder& folder, std::vector<std::string> wor
 
 }  // namespace
 
-TEST_CASE("--camera chooses among a glTF file's cameras, and among those of a scene file") {
+TEST_CASE("the flag --camera chooses among a glTF file's cameras, and among those of a scene file") {
   const TemporaryFolder folder;
   castray::write_file(folder / "a.glb", watched_square().glb());
   const std::string first = image_of(folder, {"a.glb"});
@@ -67,7 +67,8 @@ TEST_CASE("a camera that is not there is an error that names those that are") {
         "castray: error: --camera top: a.glb has no such camera; it has front, side, side 2\n");
   CHECK(error_of("a.glb", "3") ==
         "castray: error: --camera 3: a.glb has no such camera; it has front, side, side 2\n");
-  CHECK(error_of("a.glb", "99999999999999999999") == "castray: error: --camera 99999999999999999999: a.glb "
-                                                     "has no such camera; it has front, side, side 2\n");
+  CHECK(error_of("a.glb", "99999999999999999999") ==
+        "castray: error: --camera 99999999999999999999: a.glb "
+        "has no such camera; it has front, side, side 2\n");
   CHECK(error_of("a.obj", "0") == "castray: error: --camera 0: a.obj has no such camera; it has none\n");
 }

@@ -61,7 +61,7 @@ TEST_CASE("films that differ only in seed raise no more than the stated rate of 
   INFO(alarms << " alarms of 1000");
   CHECK(alarms <= 77);
   CHECK(alarms >= 5);
-  constexpr double freedom = 2 * 7;  // of 8 replicates on each side
+  constexpr double freedom = 2 * 7;                                 // of 8 replicates on each side
   CHECK(squares == Approx(freedom / (freedom - 2)).epsilon(0.05));  // the variance of Student's t
 }
 
