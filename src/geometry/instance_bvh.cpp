@@ -7,31 +7,20 @@
 
 #include "geometry/bvh_build.h"
 #include "geometry/collapse.h"
+#include "geometry/placement.h"
 
 namespace castray {
 
 namespace {
 
-struct Matrix {
-  Vec3d row[3];
-};
-
-Matrix inverse_of(const Matrix& m) {
-  const double determinant = dot(m.row[0], cross(m.row[1], m.row[2]));
-  const Vec3d c[3] = {cross(m.row[1], m.row[2]) / determinant, cross(m.row[2], m.row[0]) / determinant,
-                      cross(m.row[0], m.row[1]) / determinant};
-  return {{{c[0].x, c[1].x, c[2].x}, {c[0].y, c[1].y, c[2].y}, {c[0].z, c[1].z, c[2].z}}};
-}
-
-void store(const Matrix& m, float (&to)[3][3]) {
+KernelInstance kernel_instance(const SceneInstance& at) {
+  const Placed place(at);
+  KernelInstance out{{}, {}, {at.translation.x, at.translation.y, at.translation.z}, at.mesh};
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) to[i][k] = static_cast<float>(m.row[i][k]);
-}
-
-KernelInstance kernel_instance(const Matrix& to_scene, const Vec3f& translation, std::uint32_t object) {
-  KernelInstance out{{}, {}, {translation.x, translation.y, translation.z}, object};
-  store(to_scene, out.to_scene);
-  store(inverse_of(to_scene), out.to_object);
+    for (int k = 0; k < 3; ++k) {
+      out.to_scene[i][k] = at.rows[i][k];
+      out.to_object[i][k] = static_cast<float>(place.to_object_row(i)[k]);
+    }
   return out;
 }
 
@@ -140,15 +129,14 @@ InstanceBvh InstanceBvh::build(const Scene& scene, int threads, BuildQuality qua
     bvh.add_object(mesh_of(scene, mesh), mesh.first, threads, quality);
   float most_growth = 1;
   for (const SceneInstance& i : scene.instances) {
-    const Matrix to_scene{{Vec3d(i.rows[0]), Vec3d(i.rows[1]), Vec3d(i.rows[2])}};
-    bvh.instances_.push_back(kernel_instance(to_scene, i.translation, i.mesh));
+    bvh.instances_.push_back(kernel_instance(i));
     most_growth = std::max(most_growth, growth(bvh.instances_.back()));
   }
   bvh.plain_ = static_cast<std::uint32_t>(scene.instances.size());
   if (const MeshView own = mesh_of(scene); own.count > 0) {
     bvh.add_object(own, 0, threads, quality);
-    bvh.instances_.push_back(kernel_instance({{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {},
-                                             static_cast<std::uint32_t>(scene.shared_meshes.size())));
+    const auto object = static_cast<std::uint32_t>(scene.shared_meshes.size());
+    bvh.instances_.push_back(kernel_instance({object, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}}));
   }
   // 20 half ulps for the test in the object's space, 6 for rounding the ray on its way there, and as much
   // again for the sums that this is used in

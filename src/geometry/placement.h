@@ -50,6 +50,8 @@ class Placed {
 
   Vec3d to_object(const Vec3d& p) const { return direction_to_object(p - translation_); }
   Vec3d direction_to_object(const Vec3d& v) const { return product(to_object_, v); }
+  /// Of the matrix of direction_to_object.
+  const Vec3d& to_object_row(int i) const { return to_object_[i]; }
 
   /// The factor of error_of_test for triangles that are tested in the object's space: the greatest sum of a
   /// row of |to scene| |to object|, and half as much again, for rounding the ray on its way.

@@ -37,7 +37,8 @@ struct Surface {
 template <class T>
 class Surfaces {
  public:
-  explicit Surfaces(const Scene& scene) : scene_(scene), materials_(scene.materials) {
+  explicit Surfaces(const Scene& scene)
+      : scene_(scene), materials_(scene.materials), places_(scene.instances.begin(), scene.instances.end()) {
     normals_.reserve(scene.triangles.size());
     for (const Index3& t : scene.triangles) {
       const Vec3d v0(scene.positions[t[0]]), v1(scene.positions[t[1]]), v2(scene.positions[t[2]]);
@@ -47,8 +48,7 @@ class Surfaces {
 
   /// The surface that `ray`, of unit direction, meets at `hit`.
   Surface<T> at(const Hit<T>& hit, const Ray<T>& ray) const {
-    return hit.instance == Scene::no_index ? at(hit, ray, InPlace())
-                                           : at(hit, ray, Placed(scene_.instances[hit.instance]));
+    return hit.instance == Scene::no_index ? at(hit, ray, InPlace()) : at(hit, ray, places_[hit.instance]);
   }
 
  private:
@@ -111,6 +111,7 @@ class Surfaces {
   const Scene& scene_;
   MaterialTable<T> materials_;
   std::vector<Vec3<T>> normals_;
+  std::vector<Placed> places_;  ///< by instance
 };
 
 }  // namespace castray
