@@ -19,6 +19,7 @@
 #include "wavefront/kernel_scene.h"
 #include "wavefront/pilot.h"
 #include "wavefront/pixel_edges.h"
+#include "wavefront/tile_grid.h"
 #include "wavefront/try_lights.h"
 
 namespace castray {
@@ -88,11 +89,6 @@ Vec3f radiance_of(const TileResult& result, int i) {
   return {result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
 }
 
-/// How far a sample's tiles reach over their edges.
-int reach_of(const KernelOptions& options, std::uint64_t sample) {
-  return sample < options.ragged ? ragged_reach : 0;
-}
-
 /// The sample of a half of the film that keeps differences: even and odd indices count up two sequences with
 /// scrambles of their own, so that the halves are independent. Replicates stay what they are.
 std::uint64_t sample_of_half(std::uint64_t sample) {
@@ -102,44 +98,6 @@ std::uint64_t sample_of_half(std::uint64_t sample) {
 std::uint32_t seed_of_half(std::uint32_t seed, std::uint64_t sample) {
   return hash_combine(seed, 0x4a1fu + static_cast<std::uint32_t>(sample & 1));
 }
-
-/// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
-/// sample, so that no tile's edge stays in one place.
-struct TileGrid {
-  int shift_x = 0, shift_y = 0;  ///< of the grid, to the left and up, in pixels
-  int reach;                     ///< over a tile's edges, in pixels
-  int x0, y0, x1, y1;            ///< tiles
-
-  TileGrid(const Window& window, const KernelOptions& options, std::uint64_t sample) {
-    if (options.suffixes > 0) {
-      const std::uint32_t h =
-          hash_combine(hash_combine(options.seed, 0x5b1f7u), static_cast<std::uint32_t>(sample));
-      shift_x = static_cast<int>(h % tile_size);
-      shift_y = static_cast<int>(h / tile_size % tile_size);
-    }
-    reach = reach_of(options, sample);
-    const auto tile_of = [](int pixel) {
-      return (pixel + tile_size) / tile_size - 1;
-    };  // pixel >= -tile_size
-    x0 = tile_of(window.x0 + shift_x - reach);
-    y0 = tile_of(window.y0 + shift_y - reach);
-    x1 = tile_of(window.x1 - 1 + shift_x + reach) + 1;
-    y1 = tile_of(window.y1 - 1 + shift_y + reach) + 1;
-  }
-
-  /// The first tiles of row y, from x on and before `end`, of which pixels want the sample: none, if the tile
-  /// at x has none.
-  TileJob job(int x, int end, int y, std::uint64_t sample, const SampleMap& map) const {
-    const int left = x * tile_size - shift_x, top = y * tile_size - shift_y;
-    const auto wanted = [&](int tile) {
-      const int at = left + tile * tile_size;
-      return map.wants_any(at - reach, top - reach, at + tile_size + reach, top + tile_size + reach, sample);
-    };
-    int tiles = 0;
-    while (tiles < std::min(max_tiles, end - x) && wanted(tiles)) ++tiles;
-    return {left, top, x, y, tiles, sample};
-  }
-};
 
 /// One render of a scene, tile row by tile row.
 class WavefrontRun {
