@@ -48,6 +48,7 @@ struct TextureMap {
   float base = 0, gain = 1;
 
   bool used() const { return texture >= 0; }
+  bool operator==(const TextureMap&) const = default;
 };
 
 /// One material. Colours are linear RGB reflectances in [0,1]; `ke` is emitted radiance, >= 0. Each type
@@ -74,6 +75,8 @@ struct Material {
   bool two_sided_emission = false;
   bool multiple_scattering = false;  ///< conductor: add what facets reflect more than once
   bool vertex_colors = false;        ///< Scene::colors multiply kd where the triangle has them
+  int back = -1;  ///< index into Scene::materials of what the surface is where the normal points away from;
+                  ///< -1: the same on both sides
 
   std::array<TextureMap, surface_parameters> maps{};  ///< by SurfaceParameter
 
@@ -100,6 +103,7 @@ struct Material {
   }
   bool may_have_holes() const { return coverage < 1 || map(SurfaceParameter::coverage).used(); }
   bool absorbs() const { return type == MaterialType::dielectric && max_component(absorption) > 0; }
+  bool has_back() const { return back >= 0; }
   bool has_index() const { return eta.x > 0; }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
 };

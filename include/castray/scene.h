@@ -146,6 +146,13 @@ struct Scene {
   static constexpr std::uint32_t no_index = 0xffffffffu;
 
   const Material& material_of(std::uint32_t triangle) const { return materials[triangle_material[triangle]]; }
+  /// What a material is on one of its sides: on the front, where the normal points to, itself.
+  std::uint16_t on_side(std::uint16_t material, bool front) const {
+    const Material& m = materials[material];
+    return front || !m.has_back() ? material : static_cast<std::uint16_t>(m.back);
+  }
+  /// By material, whether some triangle has it on one of its sides.
+  std::vector<bool> used_materials() const;
   /// The triangle's object, into objects.
   std::size_t object_of(std::uint32_t triangle) const;
   /// How many triangles are in scene space, not in a shared mesh's.

@@ -67,7 +67,9 @@ std::string describe(const Material& material, const Scene& scene) {
     if (alpha_is_told && key.parameter == SurfaceParameter::alpha) continue;
     if (const std::string part = describe(key, material, scene); !part.empty()) text += ", " + part;
   }
-  return text;
+  if (!material.has_back()) return text;
+  return text + fmt::format("; on the back {}",
+                            printable(scene.materials[static_cast<std::size_t>(material.back)].name));
 }
 
 void print_bounds(const Scene& scene) {

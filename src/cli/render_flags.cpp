@@ -340,7 +340,8 @@ void apply_flags(const RenderRequest& request, Scene& scene) {
     scene.default_environment = false;
   }
   if (flags.two_sided_lights)
-    for (Material& material : scene.materials) material.two_sided_emission |= material.emits();
+    for (Material& material : scene.materials)
+      material.two_sided_emission |= material.emits() && !material.has_back();
 }
 
 }  // namespace castray::cli

@@ -1,7 +1,11 @@
 #include "core/nearest.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <numeric>
+
+#include "core/text.h"
 
 namespace castray {
 
@@ -52,6 +56,13 @@ std::string suggestion(std::string_view word, const std::vector<std::string_view
     list += name;
   }
   return list;
+}
+
+std::string not_found(std::string_view kind, std::string_view name,
+                      const std::vector<std::string_view>& known) {
+  return fmt::format(
+      "{} '{}' not found{}", kind, printable(name),
+      known.empty() ? fmt::format("; the scene has no \"{}s\"", kind) : suggestion(name, known));
 }
 
 }  // namespace castray

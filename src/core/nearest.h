@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,5 +12,16 @@ std::string_view nearest(std::string_view word, const std::vector<std::string_vi
 
 /// "; did you mean 'NAME'?" or, where nothing is near, "; known: A, B, C".
 std::string suggestion(std::string_view word, const std::vector<std::string_view>& known);
+
+/// What to say where no member of "`kind`s" has this name.
+std::string not_found(std::string_view kind, std::string_view name,
+                      const std::vector<std::string_view>& known);
+
+template <class Value>
+std::vector<std::string_view> names_in(const std::map<std::string, Value>& members) {
+  std::vector<std::string_view> names;
+  for (const auto& member : members) names.push_back(member.first);
+  return names;
+}
 
 }  // namespace castray

@@ -14,9 +14,10 @@ namespace {
 constexpr std::size_t most_pairs = 1u << 22;
 
 bool all_diffuse(const Scene& scene) {
-  return std::ranges::all_of(scene.triangle_material, [&](std::uint16_t m) {
-    return scene.materials[m].type == MaterialType::diffuse;
-  });
+  const std::vector<bool> used = scene.used_materials();
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i] && scene.materials[i].type != MaterialType::diffuse) return false;
+  return true;
 }
 
 Vec3d corner(const Scene& scene, std::size_t triangle, std::size_t k) {

@@ -74,6 +74,7 @@ struct KernelMaterial {
   float albedo_rows;          ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
   uint32_t clearcoat_albedo;  ///< principled: likewise
   float clearcoat_rows;
+  uint32_t back;        ///< what it is where the normal points away from: offset in floats of that record
   uint32_t detail;      ///< index + 1 into MaterialTables::details, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area
 };
@@ -121,8 +122,8 @@ struct MaterialTables {
   const KernelMaterial* materials;
   const KernelDetail* details;
   const KernelAlbedo* albedos;
-  const KernelMaterial *indices,
-      *absorbing;  ///< `materials` where one has a complex index, or absorbs; else null
+  /// `materials` where one has a complex index, absorbs, or has another back; else null.
+  const KernelMaterial *indices, *absorbing, *pairs;
 };
 
 /// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density

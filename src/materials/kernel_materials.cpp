@@ -64,6 +64,8 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   copy(m.k, k.k);
   copy(m.absorption * scene.unit, k.absorption);
   if (m.type == MaterialType::dielectric) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
+  k.back = static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : materials.size()) *
+           material_floats;
   k.type = static_cast<std::uint32_t>(m.type);
   k.traits = traits_of(m);
   auto values = SurfaceValues<double>(m).value;
@@ -127,6 +129,9 @@ MaterialTables KernelMaterials::tables() const {
           .indices = where_any([](const KernelMaterial& m) { return m.eta[0] > 0; }),
           .absorbing = where_any([](const KernelMaterial& m) {
             return std::ranges::any_of(m.absorption, [](float a) { return a > 0; });
+          }),
+          .pairs = where_any([this](const KernelMaterial& m) {
+            return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
           })};
 }
 

@@ -112,6 +112,7 @@ std::uint64_t scene_hash(const Scene& scene) {
       if (key.parameter) add_map(hash, m.map(*key.parameter));
     }
     hash.add(m.correlated_masking);
+    if (m.has_back()) hash.add(m.back);
     if (m.has_index()) hash.add(m.eta), hash.add(m.k);
   }
   for (const Texture& t : scene.textures) {

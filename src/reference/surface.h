@@ -58,9 +58,10 @@ class Surfaces {
     const TrianglePoint<T> point =
         placement.point(point_on_triangle(Vec3<T>(scene_.positions[t[0]]), Vec3<T>(scene_.positions[t[1]]),
                                           Vec3<T>(scene_.positions[t[2]]), hit.b1, hit.b2));
-    const std::uint16_t material = scene_.triangle_material[hit.triangle];
     const Vec3<T> normal = placement.normal(normals_[hit.triangle]);
     const Vec3<T> to_viewer = -ray.direction;
+    const std::uint16_t material =
+        scene_.on_side(scene_.triangle_material[hit.triangle], dot(normal, to_viewer) > 0);
     const Material& m = scene_.materials[material];
     const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
     const Frame<T> frame = make_frame(shading_normal(m, place, placement, normal, to_viewer));

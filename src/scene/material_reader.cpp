@@ -36,6 +36,7 @@ class MaterialReader {
       for (const MaterialKey& key : known->keys)
         if (std::ranges::find(all_keys, key.name) == all_keys.end()) all_keys.push_back(key.name);
     }
+    type_names.push_back(pair_type);
     const std::string name = fmt::format("material '{}'", printable(node_.key));
     // First the type, as the keys depend on it.
     const ObjectReader any(node_, name, all_keys);

@@ -9,8 +9,12 @@
 
 namespace castray {
 
-/// Reads one member of a scene file's "materials": a constant or an image for each key that the descriptor of
-/// its type has. Textures go to the builder; their paths are relative to `file`. Throws InputError.
+/// The type of a material that is another one on each side, which scene/named_materials.h reads.
+inline constexpr std::string_view pair_type = "two_sided";
+
+/// Reads one member of a scene file's "materials", no pair: a constant or an image for each key that the
+/// descriptor of its type has. Textures go to the builder; their paths are relative to `file`. Throws
+/// InputError.
 Material read_material(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder);
 
 /// The keys of an image that gives a parameter its value.

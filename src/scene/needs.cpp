@@ -12,8 +12,7 @@ SceneNeeds needs_of(const Scene& scene) {
   needs.smooth_normals = !scene.triangle_normals.empty();
   needs.delta_lights = scene.delta_lights.size();
   needs.environment = max_component(scene.environment) > 0;
-  std::vector<bool> used(scene.materials.size());
-  for (const std::uint16_t material : scene.triangle_material) used[material] = true;
+  const std::vector<bool> used = scene.used_materials();
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!used[i]) continue;
     const Material& m = scene.materials[i];

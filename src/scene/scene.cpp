@@ -22,6 +22,14 @@ std::size_t Scene::object_of(std::uint32_t triangle) const {
   return static_cast<std::size_t>(next - objects.begin()) - 1;
 }
 
+std::vector<bool> Scene::used_materials() const {
+  std::vector<bool> used(materials.size());
+  for (const std::uint16_t material : triangle_material) used[material] = true;
+  for (std::size_t m = 0; m < used.size(); ++m)
+    if (used[m]) used[on_side(static_cast<std::uint16_t>(m), false)] = true;
+  return used;
+}
+
 std::uint64_t Scene::shown_triangles() const {
   std::uint64_t shown = own_triangles();
   for (const SceneInstance& instance : instances) shown += shared_meshes[instance.mesh].count;

@@ -373,6 +373,9 @@ void SceneBuilder::warn_of_missing_uvs() {
     if (scene.triangle_uvs.empty() || scene.triangle_uvs[t][0] == Scene::no_index)
       ++missing[scene.triangle_material[t]];
   for (std::size_t m = 0; m < missing.size(); ++m)
+    if (scene.materials[m].has_back())
+      missing[static_cast<std::size_t>(scene.materials[m].back)] += missing[m];
+  for (std::size_t m = 0; m < missing.size(); ++m)
     if (missing[m] > 0 && scene.materials[m].has_maps())
       warnings.add(
           {scene.file.string()},

@@ -17,6 +17,7 @@
 #include "scene/json_reader.h"
 #include "scene/lights_reader.h"
 #include "scene/material_reader.h"
+#include "scene/named_materials.h"
 #include "scene/obj_mesh.h"
 #include "scene/ply_file.h"
 #include "scene/scene_builder.h"
@@ -50,16 +51,7 @@ std::string flag_value(const JsonNode& node, std::string_view name) {
   }
 }
 
-/// What to say where no member of "`kind`s" has this name.
-template <class Value>
-std::string not_found(std::string_view kind, const std::string& name,
-                      const std::map<std::string, Value>& members) {
-  std::vector<std::string_view> known;
-  for (const auto& member : members) known.push_back(member.first);
-  return fmt::format(
-      "{} '{}' not found{}", kind, printable(name),
-      known.empty() ? fmt::format("; the scene has no \"{}s\"", kind) : suggestion(name, known));
-}
+constexpr std::string_view material_name = "\"material\"";
 
 class SceneFileReader {
  public:
@@ -74,7 +66,7 @@ class SceneFileReader {
     if (const JsonNode* node = scene.find("image")) read_image_size(*node);
     if (const JsonNode* node = scene.find("render")) read_render(*node);
     if (const JsonNode* node = scene.find("environment")) read_environment(*node, file_, builder_);
-    if (const JsonNode* node = scene.find("materials")) read_materials(*node);
+    if (const JsonNode* node = scene.find("materials")) named_.read(*node);
     if (const JsonNode* lights = scene.find("lights"))
       for (const JsonNode& light : read_array(*lights, "\"lights\""))
         builder_.scene.delta_lights.push_back(read_delta_light(light));
@@ -115,32 +107,20 @@ class SceneFileReader {
           {flag.key, flag_value(flag, "\"" + printable(flag.key) + "\""), flag.key_place});
   }
 
-  void read_materials(const JsonNode& node) {
-    if (node.type != JsonNode::Type::object)
-      throw InputError(node.place, fmt::format("\"materials\" must be an object, not {}", node.type_name()));
-    for (const JsonNode& member : node.children)
-      material_indices_[member.key] = builder_.add_material(read_material(member, file_, builder_));
-  }
-
-  std::uint16_t find_material(const JsonNode& node) {
-    const auto found = material_indices_.find(read_string(node, "\"material\""));
-    if (found != material_indices_.end()) return found->second;
-    throw InputError(node.place, not_found("material", node.text, material_indices_));
-  }
-
   /// By the names that the mesh's file has for materials.
   std::map<std::string, std::uint16_t> read_replaced(const JsonNode& node) {
     if (node.type != JsonNode::Type::object)
       throw InputError(node.place,
                        fmt::format("\"materials\" of a mesh must be an object, not {}", node.type_name()));
     std::map<std::string, std::uint16_t> replaced;
-    for (const JsonNode& member : node.children) replaced[member.key] = find_material(member);
+    for (const JsonNode& member : node.children) replaced[member.key] = named_.find(member, material_name);
     return replaced;
   }
 
   MeshOptions read_mesh_options(const ObjectReader& reader) {
     MeshOptions options;
-    if (const JsonNode* material = reader.find("material")) options.material = find_material(*material);
+    if (const JsonNode* material = reader.find("material"))
+      options.material = named_.find(*material, material_name);
     if (const JsonNode* replaced = reader.find("materials")) options.materials = read_replaced(*replaced);
     if (const JsonNode* normals = reader.find("normals"))
       options.normals = static_cast<NormalsFrom>(choose(*normals, "\"normals\"", {"file", "face", "smooth"}));
@@ -206,13 +186,14 @@ class SceneFileReader {
     const ObjectReader reader(node, "an instance", keys_of("instance"));
     const JsonNode& name = reader.require("object");
     const auto found = objects_.find(read_string(name, "\"object\""));
-    if (found == objects_.end()) throw InputError(name.place, not_found("object", name.text, objects_));
+    if (found == objects_.end())
+      throw InputError(name.place, not_found("object", name.text, names_in(objects_)));
     if (!found->second.index) found->second.index = builder_.add_object();
     const JsonNode *each = reader.find("transforms"), *steps = reader.find("transform");
     const Transform all = steps ? read_transform(*steps) : Transform{};
     const std::vector<Transform> places = each ? read_transforms(*each, file_) : std::vector<Transform>(1);
     std::optional<std::uint16_t> material;
-    if (const JsonNode* other = reader.find("material")) material = find_material(*other);
+    if (const JsonNode* other = reader.find("material")) material = named_.find(*other, material_name);
     for (const Transform& place : places) builder_.place(*found->second.index, place.then(all), material);
   }
 
@@ -274,7 +255,7 @@ class SceneFileReader {
   SceneBuilder builder_;
   std::map<std::filesystem::path, GltfDocument> documents_;
   ObjMaterials materials_{builder_};
-  std::map<std::string, std::uint16_t> material_indices_;
+  NamedMaterials named_{file_, builder_};
 
   /// A member of "objects"; with an index once an instance names it.
   struct ObjectNode {
@@ -304,6 +285,7 @@ const std::vector<SceneSection>& scene_sections() {
         {"map", map_keys()},
         {"index", index_keys()},
         {"absorption", absorption_keys()},
+        {pair_type, pair_keys()},
         {"mesh", {"obj", "ply", "gltf", "material", "materials", "transform", "normals", "crease_angle"}},
         {"transform_step", transform_step_keys},
         {"instance", {"object", "transform", "transforms", "material"}},

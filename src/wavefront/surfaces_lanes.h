@@ -58,9 +58,10 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     const Float t = load(hits.t + i), b1 = load(hits.b1 + i), b2 = load(hits.b2 + i);
     const SurfaceHit at{t, b1, b2, primitive, select(hit, load(hits.instance + i), Uint(0u))};
     const SurfacePoint x = geometry.surface_point(o, d, at);
-    const Uint material = x.material * uint32_t{material_floats};
     const Float towards = dot(x.normal, d);
     const Mask front = towards < Float(0.f);
+    Uint material = x.material * uint32_t{material_floats};
+    if (scene.pairs) material = select(front, material, gather(scene.pairs, &KernelMaterial::back, material));
     const Vec facing = select(front, x.normal, -x.normal);
     const TrianglePlace place{primitive, b1, b2};
     Parameters<features> parameters = gather_parameters<features>(scene, material);

@@ -181,6 +181,38 @@ const std::vector<Case> cases = {
     // Materials
     in_line("material without type", R"(  "materials": { "a": { "kd": [1,1,1] } },)",
             "s.json:2:23: material 'a' needs the key 'type'"),
+    in_line("a pair without a back", R"(  "materials": { "a": { "type": "two_sided", "front": "b" } },)",
+            "s.json:2:23: material 'a' (two_sided) needs the key 'back'"),
+    in_line(
+        "a side that is not there",
+        R"(  "materials": { "sky": { "type": "diffuse" }, "a": { "type": "two_sided", "front": "sky", "back": "ski" } },)",
+        "s.json:2:100: material 'ski' not found; did you mean 'sky'?"),
+    in_line("a number as a side",
+            R"(  "materials": { "a": { "type": "two_sided", "front": 1, "back": 2 } },)",
+            "s.json:2:55: \"front\" must be a material or its name, not a number"),
+    in_line("a pair of a pair",
+            R"(  "materials": { "a": { "type": "two_sided", "front": "a", "back": "a" } },)",
+            "s.json:2:55: \"front\" cannot be a pair itself"),
+    in_line(
+        "a pair in a pair",
+        R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "two_sided" }, "back": "a" } },)",
+        "s.json:2:55: \"front\" cannot be a pair itself"),
+    in_line(
+        "glass on one side",
+        R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "dielectric" } } },)",
+        "s.json:2:86: \"back\" cannot be a dielectric, through which light gets to the other side"),
+    in_line(
+        "a lamp on the back",
+        R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "diffuse", "ke": 1 } } },)",
+        "s.json:2:86: \"back\" cannot emit; turn the mesh inside out and exchange \"front\" and \"back\""),
+    in_line(
+        "a side that emits on both",
+        R"(  "materials": { "l": { "type": "diffuse", "ke": 1, "two_sided_emission": true }, "a": { "type": "two_sided", "front": "l", "back": { "type": "diffuse" } } },)",
+        "s.json:2:120: \"front\" of a pair cannot emit on both sides"),
+    in_line(
+        "sides of which not the same share is there",
+        R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse", "coverage": 0.5 }, "back": { "type": "diffuse" } } },)",
+        "s.json:2:103: \"front\" and \"back\" must have the same \"coverage\""),
     in_line("unknown type", R"(  "materials": { "a": { "type": "difuse" } },)",
             "s.json:2:33: unknown material type 'difuse'; did you mean 'diffuse'?"),
     in_line("a key of no type",

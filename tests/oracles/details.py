@@ -26,6 +26,8 @@ ABSORPTION = [0.2, 0.6, 1.0]  # of the glass, which is a block instead of a card
 # Mitsuba dims what bent normals reflect at grazing angles (Conty Estevez et al. 2019) unless told not to; castray does not.
 UNSHADOWED = {"use_shadowing_function": False, "flip_invalid_normals": False}
 
+PAIR_PLACES = ((-0.7, 0), (0.7, 180))  # x, and degrees around y: each shows another side
+
 # Where the viewer is behind a bent normal, castray does not bend it, Mitsuba shows black. The camera never is, but the floor
 # may be: it is black beside such cards.
 BLACK_FLOOR = ("normals", "heights")
@@ -64,6 +66,12 @@ CASES = {
         None,
         lambda: twosided({"type": "roughconductor", "distribution": "ggx", "alpha": 0.25,
                           "eta": {"type": "rgb", "value": [0.2, 0.9, 2.5]}, "k": {"type": "rgb", "value": [3.4, 1.5, 0.8]}})),
+    "pair": (
+        {"type": "two_sided", "front": {"type": "diffuse", "kd": {"image": "colours.png"}},
+         "back": {"type": "conductor", "reflectance": {"eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0.8]}, "roughness": 0.5}},
+        None,
+        lambda: {"type": "twosided", "front": {"type": "diffuse", "reflectance": bitmap("colours.png")},
+                 "back": CASES["index"][2]()["bsdf"]}),
     "glass": (
         {"type": "dielectric", "ior": 1.5, "alpha": 0.3, "absorption": ABSORPTION},
         None,
@@ -114,14 +122,22 @@ def write_json(name, card, materials):
         "materials": {**materials, "floor": {"type": "diffuse", "kd": floor(name)},
                       "lamp": {"type": "diffuse", "kd": [0, 0, 0], "ke": LAMP}},
         "meshes": [
-            {**card, "transform": [{"rotate": [1, 0, 0, -25]}, {"translate": [0, 1, 0]}]} if name != "glass" else
-            {**card, "obj": "../../../models/shapes/cube.obj",
-             "transform": [{"scale": 0.6}, {"rotate": [0, 1, 0, 30]}, {"translate": [0, 0.8, 0]}]},
+            *cards(name, card),
             {"obj": "card.obj", "material": "floor",
              "transform": [{"scale": 3}, {"rotate": [1, 0, 0, -90]}]},
             {"obj": "card.obj", "material": "lamp",
              "transform": [{"rotate": [1, 0, 0, 90]}, {"translate": [0.5, 3.2, 1]}]}]}
     (FOLDER / f"{name}.json").write_text(json.dumps(scene, indent=1) + "\n")
+
+
+def cards(name, card):
+    if name == "glass":
+        return [{**card, "obj": "../../../models/shapes/cube.obj",
+                 "transform": [{"scale": 0.6}, {"rotate": [0, 1, 0, 30]}, {"translate": [0, 0.8, 0]}]}]
+    if name == "pair":
+        return [{**card, "transform": [{"scale": 0.6}, {"rotate": [0, 1, 0, turn]}, {"rotate": [1, 0, 0, -25]},
+                                       {"translate": [x, 1, 0]}]} for x, turn in PAIR_PLACES]
+    return [{**card, "transform": [{"rotate": [1, 0, 0, -25]}, {"translate": [0, 1, 0]}]}]
 
 
 def floor(name):
@@ -160,11 +176,14 @@ def mitsuba_scene(name):
         return {"type": "obj", "filename": str(filename), "face_normals": True, "to_world": to_world, "bsdf": bsdf, **more}
 
     def card():
+        if name == "pair":
+            return {f"card {turn}": shape(CASES[name][2](), t().translate([x, 1, 0]).rotate([1, 0, 0], -25)
+                                       .rotate([0, 1, 0], turn).scale(0.6)) for x, turn in PAIR_PLACES}
         if name != "glass":
-            return shape(CASES[name][2](), t().translate([0, 1, 0]).rotate([1, 0, 0], -25))
+            return {"card": shape(CASES[name][2](), t().translate([0, 1, 0]).rotate([1, 0, 0], -25))}
         medium = {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb(ABSORPTION)}
-        return shape(CASES[name][2](), t().translate([0, 0.8, 0]).rotate([0, 1, 0], 30).scale(0.6),
-                     ROOT / "models/shapes/cube.obj", interior=medium)
+        return {"card": shape(CASES[name][2](), t().translate([0, 0.8, 0]).rotate([0, 1, 0], 30).scale(0.6),
+                              ROOT / "models/shapes/cube.obj", interior=medium)}
 
     rgb = lambda value: {"type": "rgb", "value": value}
     return mi.load_dict({
@@ -175,7 +194,7 @@ def mitsuba_scene(name):
                    "film": {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}},
                    "sampler": {"type": "independent"}},
         "sky": {"type": "constant", "radiance": rgb(SKY)},
-        "card": card(),
+        **card(),
         "floor": shape(plain(floor(name)), t().rotate([1, 0, 0], -90).scale(3)),
         "lamp": shape(plain([0, 0, 0]), t().translate([0.5, 3.2, 1]).rotate([1, 0, 0], 90),
                       emitter={"type": "area", "radiance": rgb(LAMP)})})

@@ -7,6 +7,7 @@
 
 #include "castray/image.h"
 #include "castray/scene.h"
+#include "plan/film_key.h"
 #include "scene/material_writer.h"
 #include "temporary_folder.h"
 
@@ -173,6 +174,34 @@ TEST_CASE("parameters of materials may be images") {
   CHECK(m.map(SurfaceParameter::normal).gain == 0.5f);
   CHECK(m.map(SurfaceParameter::coverage).base == 1);
   CHECK_FALSE(m.map(SurfaceParameter::alpha).used());
+}
+
+TEST_CASE("a material may be another one on each side") {
+  const Scene scene = load_text(R"({ "materials": {
+      "sheet": { "type": "two_sided", "front": "paint", "back": { "type": "conductor", "alpha": 0.2 } },
+      "paint": { "type": "diffuse", "kd": 0.25, "ke": 3 },
+      "turned": { "type": "two_sided", "front": { "type": "diffuse", "kd": 0.125 }, "back": "plain" },
+      "plain": { "type": "diffuse", "kd": 0.5 } },
+    "meshes": [ { "obj": "t.obj", "material": "sheet" }, { "obj": "t.obj", "material": "turned" } ] })");
+  const auto side = [&](std::uint32_t triangle, bool front) {
+    return scene.materials[scene.on_side(scene.triangle_material[triangle], front)];
+  };
+  CHECK(scene.material_of(0).name == "sheet");
+  CHECK(side(0, true).kd == Vec3d(0.25));
+  CHECK(side(0, true).ke == Vec3d(3));
+  CHECK(side(0, false).type == MaterialType::conductor);
+  CHECK(side(0, false).alpha == 0.2);
+  CHECK(side(0, false).name == "sheet (back)");
+  CHECK_FALSE(side(0, false).emits());
+  CHECK(side(1, true).kd == Vec3d(0.125));
+  CHECK(side(1, false).name == "plain");
+  CHECK(scene.lights == std::vector<std::uint32_t>{0});
+  const Scene other = load_text(R"({ "materials": {
+      "a": { "type": "two_sided", "front": "b", "back": "b" }, "b": { "type": "diffuse" } },
+    "meshes": [ { "obj": "t.obj", "material": "a" } ] })");
+  CHECK(scene_hash(other) != scene_hash(load_text(R"({ "materials": {
+      "a": { "type": "diffuse" }, "b": { "type": "diffuse" } },
+    "meshes": [ { "obj": "t.obj", "material": "a" } ] })")));
 }
 
 TEST_CASE("materials are written as they are read") {

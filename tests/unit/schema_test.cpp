@@ -63,6 +63,7 @@ TEST_CASE("the JSON Schema describes materials as their descriptors do") {
     CHECK(definitions[name] == expected);
     choices.push_back(reference(name));
   }
+  choices.push_back(reference("two_sided"));
   CHECK(schema()["properties"]["materials"]["additionalProperties"]["oneOf"] == choices);
 }
 
