@@ -75,7 +75,8 @@ Scene as_instances(const Scene& flat, const std::vector<Transform>& places) {
   std::vector<std::uint32_t> order(flat.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto is_own = [&](std::uint32_t t) { return flat.material_of(t).emits(); };
-  const auto rest = std::ranges::stable_partition(order, is_own);
+  // Not the one of std::ranges: clang 14 cannot compile the view that libstdc++ 12 returns.
+  const auto rest = std::stable_partition(order.begin(), order.end(), is_own);
   const auto reordered = [&](const auto& values) {
     auto moved = values;
     for (std::size_t t = 0; t < values.size(); ++t) moved[t] = values[order[t]];
@@ -88,9 +89,9 @@ Scene as_instances(const Scene& flat, const std::vector<Transform>& places) {
   scene.triangle_uvs = reordered(flat.triangle_uvs);
   scene.triangle_colors = reordered(flat.triangle_colors);
   scene.lights.clear();
-  const auto own = static_cast<std::uint32_t>(order.size() - rest.size());
+  const auto own = static_cast<std::uint32_t>(rest - order.begin());
   for (std::uint32_t t = 0; t < own; ++t) scene.lights.push_back(t);
-  const auto count = static_cast<std::uint32_t>(rest.size()),
+  const auto count = static_cast<std::uint32_t>(order.end() - rest),
              parts = static_cast<std::uint32_t>(places.size());
   for (std::uint32_t k = 0; k < parts; ++k)
     make_instance(scene, own + k * count / parts, (k + 1) * count / parts - k * count / parts, places[k]);

@@ -89,6 +89,7 @@ DifferenceSums::DifferenceSums(int width, int height, double scale)
 
 CASTRAY_VECTOR_CLONES
 void DifferenceSums::add(const TileSamples& tile, int begin, int end, int x, int y) {
+  if (begin >= end) return;
   const double per_unit = 1 / radiance_unit();
   const int half = static_cast<int>(tile.sample & 1);
   const bool inside = x >= 0 && x + columns <= width_;

@@ -35,7 +35,8 @@ TEST_CASE("a render that needs the whole film is refused before its memory is ta
   CHECK_THAT(render(folder, {"--memory-limit", "1M"}).err, Contains("give a higher --memory-limit"));
 }
 
-TEST_CASE("an image whose film does not fit is rendered in bands, to the same bytes in every format") {
+TEST_CASE("an image whose film does not fit is rendered in bands, to the same bytes in every format",
+          "[memory]") {
   for (const char* scene : {"cornell_box", "cornell_conductor"}) {
     const TemporaryFolder folder;
     const auto image = [&](const std::string& name, std::vector<std::string> more) {
@@ -65,7 +66,7 @@ TEST_CASE("an image whose film does not fit is rendered in bands, to the same by
   }
 }
 
-TEST_CASE("bands of a reconstructed image differ from the whole by much less than its noise") {
+TEST_CASE("bands of a reconstructed image differ from the whole by much less than its noise", "[memory]") {
   const TemporaryFolder folder;
   const auto image = [&](const char* name, const char* limit) {
     return run_castray({"render", CASTRAY_ROOT "/scenes/cornell_box.json", "--size", "128x1600", "--spp", "4",
@@ -81,7 +82,7 @@ TEST_CASE("bands of a reconstructed image differ from the whole by much less tha
         0);
 }
 
-TEST_CASE("an interrupt in a band leaves no file, and says so") {
+TEST_CASE("an interrupt in a band leaves no file, and says so", "[memory]") {
   const TemporaryFolder folder;
   const RunResult result =
       run_castray({"render", CASTRAY_ROOT "/scenes/cornell_box.json", "--size", "512x512", "--spp", "1000000",
@@ -92,7 +93,7 @@ TEST_CASE("an interrupt in a band leaves no file, and says so") {
   CHECK(folder.names().empty());
 }
 
-TEST_CASE("a band of an image that is too large renders within the limit") {
+TEST_CASE("a band of an image that is too large renders within the limit", "[memory]") {
   const TemporaryFolder folder;
   const RunResult result =
       render(folder, {"--size", "16384x16384", "--crop", "0,8192,16384,8200", "--memory-limit", "1G"});
@@ -110,7 +111,7 @@ TEST_CASE("what goes beyond the limit while it renders is one line, not a killed
   CHECK_THAT(result.err, Contains("memory"));
 }
 
-TEST_CASE("the log tells the memory that is needed, sizes have units") {
+TEST_CASE("the log tells the memory that is needed, sizes have units", "[memory]") {
   const TemporaryFolder folder;
   CHECK_THAT(render(folder, {"--size", "64x64", "-v"}).err,
              Contains("castray: memory: ") && Contains("for the film"));

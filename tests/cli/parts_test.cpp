@@ -53,7 +53,8 @@ TEST_CASE("the parts of a render merge to its bytes, in any order") {
   CHECK(read_file(folder / "m.film") == read_file(folder / "whole.film"));
 }
 
-TEST_CASE("merge adds any number of films in less memory than one of them takes, to the same bytes") {
+TEST_CASE("merge adds any number of films in less memory than one of them takes, to the same bytes",
+          "[memory]") {
   const TemporaryFolder folder;
   const auto part = [&](const std::string& name, const Words& more) {
     Words words{"render", CASTRAY_ROOT "/scenes/cornell_conductor.json",
@@ -93,7 +94,7 @@ TEST_CASE("merge adds any number of films in less memory than one of them takes,
   CHECK_FALSE(std::filesystem::exists(folder / "corrupt.exr"));
 }
 
-TEST_CASE("merge adds 300 films with the memory of a few") {
+TEST_CASE("merge adds 300 films with the memory of a few", "[memory]") {
   const TemporaryFolder folder;
   REQUIRE(render(folder, {"--size", "256x256", "--samples", "0:1", "--reconstruct", "off", "-o", "p.film"})
               .exit_code == 0);

@@ -52,7 +52,7 @@ struct Case {
 
 }  // namespace
 
-TEST_CASE("what a scene takes while it is prepared is known beforehand") {
+TEST_CASE("what a scene takes while it is prepared is known beforehand", "[memory]") {
   const auto [shape, triangles, glows, build, integrator, accel] = GENERATE(values<Case>({
       {"terrain", 1200000},
       {"soup", 300000},
