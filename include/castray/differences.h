@@ -8,15 +8,23 @@ namespace castray {
 
 /// Side in pixels of the tiles whose pixels share paths.
 inline constexpr int tile_side = 8;
+/// How far outside its square a pixel of a ragged tile lies at most.
+inline constexpr int tile_reach = tile_side / 2;
 
 /// One sample of every pixel of a tile, whose paths are shared.
 struct TileSamples {
   int x = 0, y = 0;               ///< top left pixel in the full image; may lie outside
   std::uint64_t sample = 0;       ///< its index
-  std::uint64_t kept = 0;         ///< bit 8 row + column: the sample counts, and lies in the film's window
+  std::uint64_t kept = 0;         ///< bit i: the sample counts, and lies in the film's window
   std::uint64_t smooth = 0;       ///< likewise: it is finite, and its pixel, of the full image, sees no edge
-  const float* radiance[3] = {};  ///< of pixel 8 row + column
+  const float* radiance[3] = {};  ///< of pixel i
   const float* emitted[3] = {};   ///< the part of it that the camera sees directly, lamps and sky
+  /// Of a ragged tile, the place of pixel i in the full image, as signed numbers. Null: it is that of
+  /// 8 row + column in a square.
+  const std::uint32_t *ragged_x = nullptr, *ragged_y = nullptr;
+
+  int x_of(int i) const { return ragged_x ? static_cast<int>(ragged_x[i]) : x + i % tile_side; }
+  int y_of(int i) const { return ragged_y ? static_cast<int>(ragged_y[i]) : y + i / tile_side; }
 };
 
 /// Sums over the samples of smooth pixels: radiance, and the difference to each neighbour over the samples in
@@ -51,8 +59,8 @@ class DifferenceSums {
     return &counts_[row(half, y) + place(term)];
   }
 
-  /// Adds tile rows begin <= r < end, as far as they are kept. (x,y): of the tile's first pixel in the
-  /// window, may lie outside.
+  /// Adds tile rows begin <= r < end, as far as they are kept; those of a ragged tile reach further than 0 to
+  /// 7. (x,y): of the tile's first pixel in the window, may lie outside.
   void add(const TileSamples& tile, int begin, int end, int x, int y);
   /// Adds `count` pixels of another, from (other_x,other_y) on, to those from (x,y) on.
   void add_row(int x, int y, const DifferenceSums& other, int other_x, int other_y, int count);
@@ -67,6 +75,9 @@ class DifferenceSums {
   const std::vector<std::uint32_t>& all_counts() const { return counts_; }
 
  private:
+  void add_square(const TileSamples& tile, int begin, int end, int x, int y);
+  void add_ragged(const TileSamples& tile, int begin, int end, int x, int y);
+
   /// Where the counts of a row begin.
   std::size_t row(int half, int y) const { return place((half * height_ + y) * std::ptrdiff_t{terms}); }
   std::size_t place(std::ptrdiff_t rows) const { return static_cast<std::size_t>(rows * width_); }

@@ -1,6 +1,7 @@
 #include "castray/differences.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -10,7 +11,7 @@ namespace castray {
 
 namespace {
 
-constexpr int columns = tile_side;
+constexpr int columns = tile_side, tile_pixels = tile_side * tile_side;
 constexpr unsigned all_columns = 0xff;
 constexpr double brightest_sample = 0x1p50;  ///< in units
 
@@ -77,6 +78,32 @@ void add_part_of_row(const RowValues& values, unsigned bits, std::uint32_t* coun
   }
 }
 
+/// Which pixel of a ragged tile has a place.
+class RaggedPlaces {
+ public:
+  explicit RaggedPlaces(const TileSamples& tile) : tile_(tile) {
+    pixels_.fill(none);
+    for (int i = 0; i < tile_pixels; ++i) pixels_[place(i)] = static_cast<std::int8_t>(i);
+  }
+  int column(int i) const { return tile_.x_of(i) - tile_.x; }
+  int row(int i) const { return tile_.y_of(i) - tile_.y; }
+
+  static constexpr int none = -1;
+  int right_of(int i) const { return pixels_[place(i) + 1]; }
+  int below(int i) const { return pixels_[place(i) + stride]; }
+
+ private:
+  static constexpr std::size_t stride = columns + 2 * tile_reach + 1;
+
+  std::size_t place(int i) const {
+    return static_cast<std::size_t>(row(i) + tile_reach) * stride +
+           static_cast<std::size_t>(column(i) + tile_reach);
+  }
+
+  const TileSamples& tile_;
+  std::array<std::int8_t, stride * stride> pixels_;
+};
+
 }  // namespace
 
 DifferenceSums::DifferenceSums(int width, int height, double scale)
@@ -87,9 +114,42 @@ DifferenceSums::DifferenceSums(int width, int height, double scale)
       sums_(row(halves, 0) * channels),
       counts_(row(halves, 0)) {}
 
-CASTRAY_VECTOR_CLONES
 void DifferenceSums::add(const TileSamples& tile, int begin, int end, int x, int y) {
   if (begin >= end) return;
+  if (tile.ragged_x)
+    add_ragged(tile, begin, end, x, y);
+  else
+    add_square(tile, begin, end, x, y);
+}
+
+void DifferenceSums::add_ragged(const TileSamples& tile, int begin, int end, int x, int y) {
+  const double per_unit = 1 / radiance_unit();
+  const int half = static_cast<int>(tile.sample & 1);
+  const RaggedPlaces places(tile);
+  RowValues rows[columns];
+  for (int r = 0; r < columns; ++r) read_reflected(tile, r, per_unit, rows[r]);
+  const auto value = [&](int i, int c) { return rows[i / columns].channel[c][i % columns]; };
+  const auto is_smooth = [&](int i) { return i != RaggedPlaces::none && (tile.smooth >> i & 1) != 0; };
+  for (int i = 0; i < tile_pixels; ++i) {
+    const int r = places.row(i);
+    if (r < begin || r >= end || (tile.kept >> i & 1) == 0 || !is_smooth(i)) continue;
+    const auto add = [&](Term term, auto values) {
+      const std::size_t at = row(half, y + r) + place(term),
+                        column = static_cast<std::size_t>(x + places.column(i));
+      ++counts_[at + column];
+      for (int c = 0; c < channels; ++c) sums_[at * channels + place(c) + column] += values(c);
+    };
+    const auto add_difference = [&](Term term, int neighbour) {
+      if (is_smooth(neighbour)) add(term, [&](int c) { return value(neighbour, c) - value(i, c); });
+    };
+    add(own, [&](int c) { return value(i, c); });
+    add_difference(right, places.right_of(i));
+    add_difference(below, places.below(i));
+  }
+}
+
+CASTRAY_VECTOR_CLONES
+void DifferenceSums::add_square(const TileSamples& tile, int begin, int end, int x, int y) {
   const double per_unit = 1 / radiance_unit();
   const int half = static_cast<int>(tile.sample & 1);
   const bool inside = x >= 0 && x + columns <= width_;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -107,13 +108,9 @@ void Film::add_splat(int x, int y, const Vec3f& radiance) {
 void Film::keep_differences() { differences_ = DifferenceSums(width(), height(), scale_); }
 
 void Film::add(const TileSamples& tile, int y0, int y1) {
-  for (int y = y0; y < y1; ++y) {
-    const int row = y - tile.y;
-    for (int column = 0; column < tile_side; ++column) {
-      const int i = row * tile_side + column;
-      if (tile.kept >> i & 1)
-        add(tile.x + column, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
-    }
+  for (std::uint64_t kept = tile.kept; kept != 0; kept &= kept - 1) {
+    const int i = std::countr_zero(kept), x = tile.x_of(i), y = tile.y_of(i);
+    if (y >= y0 && y < y1) add(x, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
   }
   differences_.add(tile, y0 - tile.y, y1 - tile.y, tile.x - window_.x0, tile.y - window_.y0);
 }

@@ -1,37 +1,41 @@
 #include "wavefront/camera_rays_lanes.h"
 
 #include "cameras/camera_lanes.h"
+#include "wavefront/ragged_tiles_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
-/// Mirrors coordinate `at` across the nearer edge of its tile, by chance: half of the pixels next to an edge,
-/// fewer and fewer further in. Both pixels of a pair do the same, so that each pixel is in one tile.
-CASTRAY_INLINE Uint swap_across_edge(uint32_t key, Uint at, Uint along) {
-  const Uint place = at & (tile_size - 1u), half(tile_size / 2u);
-  const Mask low = place < half;
-  const Uint steps = select(low, place, Uint(tile_size - 1u) - place);
-  const Uint edge = select(low, at - place, at - place + Uint(tile_size));
-  const Uint mirrored = select(low, edge - steps - 1u, edge + steps);
-  const Float chance = Float(0.5f) - (to_float(steps) + Float(0.5f)) * Float(1.f / tile_size);
-  const Uint dice = hash_combine(hash_combine(Uint(key), edge + steps), along);
-  return select(to_float(dice >> 8) * Float(0x1p-24f) < chance, mirrored, at);
+/// Looks up which pixels see an edge.
+CASTRAY_INLINE void find_edges(const Context& c, TileResult& result) {
+  const EdgeTable& table = c.scene.edges;
+  for (int tile = 0; tile < c.job.tiles; ++tile) {
+    uint64_t edges = 0;
+    for (int i = 0; i < tile_pixels; ++i) {
+      const int slot = tile * tile_pixels + i;
+      const int x = (int)result.x[slot] - table.x0, y = (int)result.y[slot] - table.y0;
+      edges |= (uint64_t)(table.kinds[y * table.width + x] != 0) << i;
+    }
+    result.edges[tile] = edges;
+  }
 }
 
 void place_pixels(const Context& c, TileResult& result) {
-  const bool ragged = c.job.sample < c.options.ragged;
+  const bool ragged = c.job.sample < c.options.ragged, in_strips = ragged && c.scene.edges.kinds;
   const uint32_t key = lane(hash_combine(Uint(c.options.seed ^ 0x3a99edu), Uint((uint32_t)c.job.sample)), 0);
   const Uint left((uint32_t)(c.job.grid_x * tile_size)), top((uint32_t)(c.job.grid_y * tile_size));
   for (int i = 0; i < c.job.tiles * tile_pixels; i += width) {
     const Uint entry = Uint((uint32_t)i) + lane_index();
     Uint x = left + ((entry >> 6) << 3) + (entry & 7u), y = top + ((entry >> 3) & 7u);
-    if (ragged) {
+    if (ragged && !in_strips) {
       x = swap_across_edge(key, x, y);
       y = swap_across_edge(key + 1, y, x);
     }
     store(result.x + i, x - left + Uint((uint32_t)c.job.x));
     store(result.y + i, y - top + Uint((uint32_t)c.job.y));
   }
+  for (int tile = 0; in_strips && tile < c.job.tiles; ++tile) place_in_strips(c, key, tile, result);
+  if (c.scene.edges.kinds) find_edges(c, result);
 }
 
 /// The key of pixel (x,y) in one epoch.
@@ -42,8 +46,9 @@ CASTRAY_INLINE Uint key_of_pixel(uint32_t seed, Uint x, Uint y, uint64_t sample)
 CASTRAY_INLINE uint32_t index_of(uint64_t sample) { return (uint32_t)sample & ((1u << index_bits) - 1); }
 
 /// Draws the place in the pixel anew for pixels from number i on that see an edge.
-CASTRAY_INLINE void move_at_edges(const Context& c, int i, Uint x, Uint y, Float (&place)[4]) {
-  const uint32_t edges = (uint32_t)(c.job.edges[i / tile_pixels] >> (i % tile_pixels)) & ((1u << width) - 1);
+CASTRAY_INLINE void move_at_edges(const Context& c, const TileResult& pixels, int i, Uint x, Uint y,
+                                  Float (&place)[4]) {
+  const uint32_t edges = (uint32_t)(pixels.edges[i / tile_pixels] >> (i % tile_pixels)) & ((1u << width) - 1);
   if (edges == 0) return;
   const Uint key = key_of_pixel(c.job.edge_seed, x, y, c.job.edge_sample);
   const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index_of(c.job.edge_sample))}, PathBlocks::camera);
@@ -59,7 +64,7 @@ void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
     const Uint x = load(pixels.x + i), y = load(pixels.y + i);
     const Uint key = key_of_pixel(c.options.seed, x, y, c.job.sample);
     Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
-    if (c.job.edges) move_at_edges(c, i, x, y, n.u);
+    if (c.scene.edges.kinds) move_at_edges(c, pixels, i, x, y, n.u);
     const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));
     const Float py = to_float(y) + (c.options.jitter ? n.u[1] : Float(0.5f));
     const Numbers<2> lens = camera.has_lens ? draw<2>(c.options.sobol, {key, Uint(index)}, PathBlocks::lens)

@@ -6,8 +6,8 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Places the pixels of a job. In the first samples tiles have ragged edges: straight edges between tiles
-/// that share paths would be visible.
+/// Places the pixels of a job, and looks up which of them see an edge. In the first samples tiles have ragged
+/// edges: straight edges between tiles that share paths would be visible.
 void place_pixels(const Context& c, TileResult& pixels);
 
 /// One ray for each pixel of the job, slot = its number.

@@ -23,11 +23,18 @@ struct FirstHits {
   bool known;  ///< false: fill the table, render nothing
 };
 
+/// Pixels that see an edge: a table over all pixels that tiles reach, from (x0,y0) on.
+struct EdgeTable {
+  const uint8_t* kinds = nullptr;  ///< 0: none; null: no pixel is known to see one
+  int x0 = 0, y0 = 0, width = 0;
+};
+
 struct KernelScene : MaterialTables {
   SceneGeometry geometry;
   LightList lights;
   KernelCamera camera;
   FirstHits first_hits;
+  EdgeTable edges;
 };
 
 struct KernelOptions {
@@ -52,10 +59,7 @@ struct TileJob {
   int grid_x, grid_y;  ///< of the first tile, in the grid of tiles
   int tiles;
   uint64_t sample;
-  /// By tile, a bit for each pixel: whether its camera ray is that of sample `edge_sample` under `edge_seed`.
-  /// Null: no pixel's.
-  const uint64_t* edges = nullptr;
-  uint64_t edge_sample = 0;
+  uint64_t edge_sample = 0;  ///< pixels that see an edge have the camera ray of this sample under `edge_seed`
   uint32_t edge_seed = 0;
 };
 
@@ -75,7 +79,8 @@ struct TileResult {
   uint32_t *x, *y;  ///< as signed numbers, for pixels left of or above the image
   float* radiance[3];
   uint64_t rays, gathered, asked, evaluated;
-  float* emitted[3] = {};  ///< if not null: the part of `radiance` that the camera sees directly
+  float* emitted[3] = {};          ///< if not null: the part of `radiance` that the camera sees directly
+  uint64_t edges[max_tiles] = {};  ///< by tile, a bit for each pixel: it sees an edge
 };
 
 /// Some of the paths from lights of one sample, at most batch_size, that have numbers from `first` on, a

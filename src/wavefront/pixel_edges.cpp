@@ -9,7 +9,9 @@ namespace castray {
 
 namespace {
 
-constexpr int rows_of_a_strip = 16, margin = tile_size - 1;
+constexpr int rows_of_a_strip = 16;
+/// As far as the pixels of tiles that have pixels in a window lie outside it.
+constexpr int margin = tile_size - 1 + 2 * ragged_reach;
 /// Two points are of one surface if the cosine between their normals and the sine between the line through
 /// them and the surface are within these.
 constexpr float least_cosine = 0.9f, most_sine = 0.2f;
@@ -79,7 +81,7 @@ PixelEdges::PixelEdges(const Scene& scene, const KernelApi& kernel, const Kernel
     std::vector<Corner> above = corners_of(begin);
     for (int row = begin; row < std::min(begin + rows_of_a_strip, height); ++row) {
       std::vector<Corner> below = corners_of(row + 1);
-      Kind* kinds = &kinds_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_)];
+      std::uint8_t* kinds = &kinds_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_)];
       for (std::size_t x = 0; x + 1 < above.size(); ++x) {
         const Corner seen[] = {above[x], above[x + 1], below[x + 1], below[x]};
         if (is_edge(seen)) kinds[x] = sees_lamp(scene, seen) ? lamp_edge : edge;
@@ -87,16 +89,6 @@ PixelEdges::PixelEdges(const Scene& scene, const KernelApi& kernel, const Kernel
       above = std::move(below);
     }
   }
-}
-
-std::uint64_t PixelEdges::of_tile(int x, int y) const {
-  std::uint64_t bits = 0;
-  for (int row = 0; row < tile_size; ++row)
-    for (int column = 0; column < tile_size; ++column) {
-      const bool edge = kinds_[place(x + column, y + row)] != smooth;
-      bits |= std::uint64_t{edge} << (row * tile_size + column);
-    }
-  return bits;
 }
 
 }  // namespace castray

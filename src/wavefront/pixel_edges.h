@@ -17,8 +17,7 @@ class PixelEdges {
   PixelEdges(const Scene& scene, const KernelApi& kernel, const KernelSceneData& data, const Window& window,
              int threads);
 
-  /// Those of a tile that has pixels in the window, (x,y) its top left one: bit 8 row + column.
-  std::uint64_t of_tile(int x, int y) const;
+  EdgeTable table() const { return {kinds_.data(), x0_, y0_, width_}; }
   /// Whether pixel (x,y) of the window sees the outline of a lamp.
   bool of_lamp(int x, int y) const { return kinds_[place(x, y)] == lamp_edge; }
 
@@ -31,7 +30,7 @@ class PixelEdges {
   }
 
   int x0_ = 0, y0_ = 0, width_ = 0;
-  std::vector<Kind> kinds_;
+  std::vector<std::uint8_t> kinds_;  ///< Kind
 };
 
 }  // namespace castray

@@ -10,11 +10,6 @@
 
 namespace castray {
 
-/// How far a sample's tiles reach over their edges.
-inline int reach_of(const KernelOptions& options, std::uint64_t sample) {
-  return sample < options.ragged ? ragged_reach : 0;
-}
-
 /// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
 /// sample, so that no tile's edge stays in one place.
 struct TileGrid {
@@ -29,7 +24,7 @@ struct TileGrid {
       shift_x = static_cast<int>(h % tile_size);
       shift_y = static_cast<int>(h / tile_size % tile_size);
     }
-    reach = reach_of(options, sample);
+    reach = sample < options.ragged ? ragged_reach : 0;
     const auto tile_of = [](int pixel) {
       return (pixel + tile_size) / tile_size - 1;
     };  // pixel >= -tile_size

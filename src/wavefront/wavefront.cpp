@@ -79,7 +79,7 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan, boo
   k.environment_points = plan.environment_points;
   // from then on so many grids lie over each other that none can be told
   constexpr std::uint64_t few_samples = 4;
-  k.ragged = plan.suffixes > 0 && !differences ? few_samples : 0;
+  k.ragged = plan.suffixes > 0 ? few_samples / (differences ? DifferenceSums::halves : 1) : 0;
   k.seed =
       hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
   return k;
@@ -119,7 +119,10 @@ class WavefrontRun {
     if (!job.options.jitter && !scene_.camera.has_lens && !scene_.geometry.tree.partial.triangles &&
         !data.instances)
       find_first_hits();
-    if (differences_) edges_ = PixelEdges(scene, kernel, data, window_, job.threads);
+    if (differences_) {
+      edges_ = PixelEdges(scene, kernel, data, window_, job.threads);
+      scene_.edges = edges_.table();
+    }
   }
 
   /// Tile row `row` of each sample's grid, and the last one or two where the grid has more than there are
@@ -140,15 +143,17 @@ class WavefrontRun {
             TileJob job = grid.job(x, x1, y, s, map);
             x += std::max(job.tiles, 1);
             if (job.tiles == 0) continue;
-            std::uint64_t edges[max_tiles];
-            if (differences_) find_edges(job, edges);
             job.sample = drawn;
+            // what pixels see of an edge is the better spread the longer the sequence of their camera rays:
+            // it is one for both halves, as these pixels have no part in differences
+            job.edge_sample = s;
+            job.edge_seed = options_.seed;
             render_tiles_(scene_, options, job, workplace.scratch.get(), result);
             job.sample = s;
             if (differences_)
-              add_tiles(job, result, map, film, stats);
+              add_tiles(job, grid.reach, result, map, film, stats);
             else
-              add(job, result, map, film, stats);
+              add(job, grid.reach, result, map, film, stats);
           }
       }
     for (std::uint64_t s = samples.first; trace_light_paths_ && s < samples.first + samples.count; ++s)
@@ -186,15 +191,6 @@ class WavefrontRun {
     table.known = true;
   }
 
-  /// What pixels see of an edge is the better spread the longer the sequence of their camera rays: it is one
-  /// for both halves, as these pixels have no part in differences.
-  void find_edges(TileJob& job, std::uint64_t (&edges)[max_tiles]) const {
-    for (int k = 0; k < job.tiles; ++k) edges[k] = edges_.of_tile(job.x + k * tile_size, job.y);
-    job.edges = edges;
-    job.edge_sample = job.sample;
-    job.edge_seed = options_.seed;
-  }
-
   int lock_of(int y) const { return (y - window_.y0) / tile_size; }
 
   /// Whether the sample of pixel (x,y) counts: it lies in the window, is wanted, and is finite, or is told.
@@ -208,9 +204,9 @@ class WavefrontRun {
 
   /// Adds a job's samples to the film where they lie in its window and are wanted, under the locks of the
   /// rows they share with other jobs.
-  void add(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film, RowStats& stats) {
+  void add(const TileJob& job, int reach, const TileResult& result, const SampleMap& map, Film& film,
+           RowStats& stats) {
     const int count = job.tiles * tile_pixels;
-    const int reach = reach_of(options_, job.sample);
     const int first = std::max(job.y - reach, window_.y0);
     const int last = std::min(job.y + tile_size + reach, window_.y1) - 1;
     for (int l = lock_of(first); first <= last && l <= lock_of(last); ++l) {
@@ -262,11 +258,12 @@ class WavefrontRun {
   }
 
   /// The same for a film that keeps differences: whole tiles.
-  void add_tiles(const TileJob& job, const TileResult& result, const SampleMap& map, Film& film,
+  void add_tiles(const TileJob& job, int reach, const TileResult& result, const SampleMap& map, Film& film,
                  RowStats& stats) {
     TileSamples tiles[max_tiles];
-    for (int k = 0; k < job.tiles; ++k) tiles[k] = tile_samples(job, k, result, map, stats);
-    const int first = std::max(job.y, window_.y0), end = std::min(job.y + tile_size, window_.y1);
+    for (int k = 0; k < job.tiles; ++k) tiles[k] = tile_samples(job, k, reach > 0, result, map, stats);
+    const int first = std::max(job.y - reach, window_.y0),
+              end = std::min(job.y + tile_size + reach, window_.y1);
     for (int y = first; y < end;) {
       const int l = lock_of(y), next = std::min(window_.y0 + (l + 1) * tile_size, end);
       const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
@@ -275,18 +272,22 @@ class WavefrontRun {
     }
   }
 
-  TileSamples tile_samples(const TileJob& job, int k, const TileResult& result, const SampleMap& map,
-                           RowStats& stats) const {
+  TileSamples tile_samples(const TileJob& job, int k, bool ragged, const TileResult& result,
+                           const SampleMap& map, RowStats& stats) const {
     const int first = k * tile_pixels;
     TileSamples tile{.x = job.x + k * tile_size, .y = job.y, .sample = job.sample};
     for (int c = 0; c < 3; ++c) {
       tile.radiance[c] = result.radiance[c] + first;
       tile.emitted[c] = result.emitted[c] + first;
     }
+    if (ragged) {
+      tile.ragged_x = result.x + first;
+      tile.ragged_y = result.y + first;
+    }
     for (int i = 0; i < tile_pixels; ++i) {
-      const int x = tile.x + i % tile_size, y = tile.y + i / tile_size;
+      const auto x = static_cast<int>(result.x[first + i]), y = static_cast<int>(result.y[first + i]);
       const std::uint64_t bit = std::uint64_t{1} << i;
-      const bool smooth = (job.edges[k] & bit) == 0;
+      const bool smooth = (result.edges[k] & bit) == 0;
       const Vec3f radiance = radiance_of(result, first + i);
       if (x < 0 || x >= window_.full_width || y < 0 || y >= window_.full_height) continue;
       if (keeps(x, y, job.sample, radiance, map, stats)) {

@@ -134,6 +134,65 @@ TEST_CASE("pixels that see an edge have samples, but no part in differences") {
   CHECK(static_cast<double>(sums.sums(0, 2, Term::below, 0)[4]) * sums.radiance_unit() == 8);
 }
 
+TEST_CASE("neighbours in a ragged tile have differences, wherever in it they are") {
+  // pixel i at 5 i modulo 64 of the square, but that four of its pixels have changed places with some outside
+  std::array<float, 64> radiance, emitted = {};
+  std::array<std::uint32_t, 64> at_x, at_y;
+  std::array<int, 16 * 16> pixel_at;
+  pixel_at.fill(-1);
+  for (int i = 0; i < 64; ++i) {
+    int x = 8 + i * 5 % 64 % 8, y = 8 + i * 5 % 64 / 8;
+    if (x == 8 && y < 10) x = 7;
+    if (y == 15 && x > 13) y = 16;
+    const auto k = static_cast<std::size_t>(i);
+    at_x[k] = static_cast<std::uint32_t>(x);
+    at_y[k] = static_cast<std::uint32_t>(y);
+    radiance[k] = static_cast<float>(i * i % 37);
+    pixel_at[static_cast<std::size_t>((y - 4) * 16 + x - 4)] = i;
+  }
+  constexpr int edge = 30, not_kept = 17;
+  TileSamples tile{.x = 8,
+                   .y = 8,
+                   .kept = ~(std::uint64_t{1} << not_kept),
+                   .smooth = ~(std::uint64_t{1} << edge),
+                   .ragged_x = at_x.data(),
+                   .ragged_y = at_y.data()};
+  for (int c = 0; c < 3; ++c) {
+    tile.radiance[c] = radiance.data();
+    tile.emitted[c] = emitted.data();
+  }
+  Film film({24, 24, 0, 0, 24, 24}, 64);
+  film.keep_differences();
+  film.add(tile, 0, 10);  // in two parts, as where rows are locked one after the other
+  film.add(tile, 10, 24);
+  const DifferenceSums& sums = film.differences();
+  using Term = DifferenceSums::Term;
+  int differences = 0;
+  for (int y = 4; y < 19; ++y)
+    for (int x = 4; x < 19; ++x) {
+      const auto at = [&](int dx, int dy) {
+        return pixel_at[static_cast<std::size_t>((y + dy - 4) * 16 + x + dx - 4)];
+      };
+      const auto value = [&](int i) { return double{radiance[static_cast<std::size_t>(i)]}; };
+      const auto sum = [&](Term term) {
+        return static_cast<double>(sums.sums(0, y, term, 1)[x]) * sums.radiance_unit();
+      };
+      const int here = at(0, 0);
+      const bool counts = here >= 0 && here != not_kept, smooth = counts && here != edge;
+      CHECK(film.count(x, y) == (counts ? 1 : 0));
+      CHECK(film.mean(x, y).y == (counts ? value(here) : 0));
+      CHECK(sums.counts(0, y, Term::own)[x] == (smooth ? 1 : 0));
+      CHECK(sum(Term::own) == (smooth ? value(here) : 0));
+      for (const auto& [term, there] : {std::pair(Term::right, at(1, 0)), {Term::below, at(0, 1)}}) {
+        const bool pair = smooth && there >= 0 && there != edge;
+        CHECK(sums.counts(0, y, term)[x] == (pair ? 1 : 0));
+        CHECK(sum(term) == (pair ? value(there) - value(here) : 0));
+        differences += pair ? 1 : 0;
+      }
+    }
+  CHECK(differences > 90);
+}
+
 TEST_CASE("radiance is summed to the nearest unit") {
   TiledFilm film({8, 8, 0, 0, 8, 8});
   const double unit = film.differences().radiance_unit();

@@ -97,6 +97,19 @@ TEST_CASE("the generic kernel gives the same bytes where the arithmetic is the s
   CHECK(difference < 1e-3 * sum);  // the same paths; a few part where a rounding differs
 }
 
+TEST_CASE("threads, crops and sample ranges do not show in sums of differences") {
+  const Scene scene = standard_scene("kinds/cove");
+  RenderOptions options = small("auto");
+  options.reconstruct = Switch::on;
+  const Film whole = render(scene, options).film;
+  check_parts(scene, options, whole);
+  options.crop = Window{0, 0, 11, 6, 30, 29};
+  const DifferenceSums crop = render(scene, options).film.differences(),
+                       part = whole.part({45, 37, 11, 6, 30, 29}).differences();
+  CHECK(crop.all_counts() == part.all_counts());
+  CHECK(crop.all_sums() == part.all_sums());
+}
+
 TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") {
   const Scene scene = standard_scene("cornell_conductor");
   for (const auto& [shared, jitter] : {std::pair(true, true), {true, false}, {false, true}, {false, false}}) {
@@ -145,12 +158,14 @@ TEST_CASE(
 TEST_CASE("tiles with ragged edges and moved grids give every pixel each sample once") {
   const Scene scene = standard_scene("furnace");
   RenderOptions options = small("auto");
-  for (std::uint64_t first = 0; first < 12; ++first) {
-    options.samples = SampleRange{first, 1};
-    const Film film = render(scene, options).film;
-    for (int y = 0; y < options.height; ++y)
-      for (int x = 0; x < options.width; ++x) REQUIRE(film.count(x, y) == 1);
-  }
+  for (const Switch reconstruct : {Switch::off, Switch::on})
+    for (std::uint64_t first = 0; first < 12; ++first) {
+      options.reconstruct = reconstruct;
+      options.samples = SampleRange{first, 1};
+      const Film film = render(scene, options).film;
+      for (int y = 0; y < options.height; ++y)
+        for (int x = 0; x < options.width; ++x) REQUIRE(film.count(x, y) == 1);
+    }
 }
 
 TEST_CASE("the kernels draw the numbers of sample_block") {
