@@ -122,6 +122,7 @@ void DifferenceSums::add(const TileSamples& tile, int begin, int end, int x, int
     add_square(tile, begin, end, x, y);
 }
 
+CASTRAY_VECTOR_CLONES
 void DifferenceSums::add_ragged(const TileSamples& tile, int begin, int end, int x, int y) {
   const double per_unit = 1 / radiance_unit();
   const int half = static_cast<int>(tile.sample & 1);

@@ -6,15 +6,24 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// The lowest bit of each of eight bytes, that of the first in bit 0.
+CASTRAY_INLINE uint64_t low_bits_of_bytes(const uint8_t* bytes) {
+  uint64_t all;
+  __builtin_memcpy(&all, bytes, sizeof all);
+  return ((all & 0x0101010101010101u) * 0x0102040810204080u) >> 56;  // byte i times 2^(56 - 7 i)
+}
+
 /// Looks up which pixels see an edge.
-CASTRAY_INLINE void find_edges(const Context& c, TileResult& result) {
+CASTRAY_INLINE void find_edges(const Context& c, bool ragged, TileResult& result) {
   const EdgeTable& table = c.scene.edges;
+  const auto kinds_at = [&](int slot) {
+    return table.kinds + ((int)result.y[slot] - table.y0) * table.width + ((int)result.x[slot] - table.x0);
+  };
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     uint64_t edges = 0;
-    for (int i = 0; i < tile_pixels; ++i) {
-      const int slot = tile * tile_pixels + i;
-      const int x = (int)result.x[slot] - table.x0, y = (int)result.y[slot] - table.y0;
-      edges |= (uint64_t)(table.kinds[y * table.width + x] != 0) << i;
+    for (int i = 0; i < tile_pixels; i += ragged ? 1 : tile_size) {
+      const uint8_t* kinds = kinds_at(tile * tile_pixels + i);
+      edges |= (ragged ? kinds[0] & uint64_t{1} : low_bits_of_bytes(kinds)) << i;
     }
     result.edges[tile] = edges;
   }
@@ -35,7 +44,7 @@ void place_pixels(const Context& c, TileResult& result) {
     store(result.y + i, y - top + Uint((uint32_t)c.job.y));
   }
   for (int tile = 0; in_strips && tile < c.job.tiles; ++tile) place_in_strips(c, key, tile, result);
-  if (c.scene.edges.kinds) find_edges(c, result);
+  if (c.scene.edges.kinds) find_edges(c, ragged, result);
 }
 
 /// The key of pixel (x,y) in one epoch.

@@ -25,7 +25,7 @@ struct FirstHits {
 
 /// Pixels that see an edge: a table over all pixels that tiles reach, from (x0,y0) on.
 struct EdgeTable {
-  const uint8_t* kinds = nullptr;  ///< 0: none; null: no pixel is known to see one
+  const uint8_t* kinds = nullptr;  ///< 0: none; else bit 0 is set. Null: no pixel is known to see one
   int x0 = 0, y0 = 0, width = 0;
 };
 

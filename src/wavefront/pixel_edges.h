@@ -22,7 +22,7 @@ class PixelEdges {
   bool of_lamp(int x, int y) const { return kinds_[place(x, y)] == lamp_edge; }
 
  private:
-  enum Kind : std::uint8_t { smooth, edge, lamp_edge };
+  enum Kind : std::uint8_t { smooth = 0, edge = 1, lamp_edge = 3 };  ///< as in EdgeTable
 
   std::size_t place(int x, int y) const {
     return static_cast<std::size_t>(y - y0_) * static_cast<std::size_t>(width_) +

@@ -264,12 +264,13 @@ class WavefrontRun {
     for (int k = 0; k < job.tiles; ++k) tiles[k] = tile_samples(job, k, reach > 0, result, map, stats);
     const int first = std::max(job.y - reach, window_.y0),
               end = std::min(job.y + tile_size + reach, window_.y1);
-    for (int y = first; y < end;) {
-      const int l = lock_of(y), next = std::min(window_.y0 + (l + 1) * tile_size, end);
-      const std::lock_guard lock(row_locks_[static_cast<std::size_t>(l)]);
-      for (int k = 0; k < job.tiles; ++k) film.add(tiles[k], y, next);
-      y = next;
-    }
+    if (first >= end) return;
+    std::unique_lock<std::mutex>
+        locks[2 + 2 * ragged_reach / tile_size];  // in one order, so that none waits for ever
+    const int first_lock = lock_of(first), last_lock = lock_of(end - 1);
+    for (int l = first_lock; l <= last_lock; ++l)
+      locks[l - first_lock] = std::unique_lock(row_locks_[static_cast<std::size_t>(l)]);
+    for (int k = 0; k < job.tiles; ++k) film.add(tiles[k], first, end);
   }
 
   TileSamples tile_samples(const TileJob& job, int k, bool ragged, const TileResult& result,
