@@ -47,6 +47,12 @@ BuildQuality build_quality(const Scene& scene, const RenderOptions& options, con
   return choose_build(options.build, wasted_boxes(mesh), mesh.count, usual_rays_of_a_pixel * pixels);
 }
 
+/// How many times as good something is: with two digits behind the point where it is hardly better or worse.
+std::string times(double factor) {
+  const bool near_tie = factor > 0.95 && factor < 1.05;
+  return near_tie ? fmt::format("{:.2f} times", factor) : fmt::format("{:.2g} times", factor);
+}
+
 std::string kernel_name(const Plan& plan) {
   std::string name = plan.list ? "list" : plan.features & feature_instances ? "BVH of instances" : "BVH";
   name += plan.features & feature_detail      ? ", all materials, textures, smooth normals"
@@ -55,17 +61,17 @@ std::string kernel_name(const Plan& plan) {
   name += plan.suffixes > 0 ? ", " + std::to_string(plan.suffixes) + " paths shared by 8x8 pixels"
                             : ", plain paths";
   if (plan.light_regions > 0)
-    name += fmt::format(
-        ", lights by what is seen of them in {} {} (by a pilot, {:.2g} times as good as by bounds)",
-        plan.light_regions, plan.light_regions == 1 ? "region" : "regions", plan.gain_of_regions);
+    name += fmt::format(", lights by what is seen of them in {} {} (by a pilot, {} as good as by bounds)",
+                        plan.light_regions, plan.light_regions == 1 ? "region" : "regions",
+                        times(plan.gain_of_regions));
   if (plan.light_paths) name += ", caustics by paths from lights";
   if (plan.gain_of_light_paths > 0)
-    name += fmt::format("{} (by a pilot, paths from lights are {:.2g} times as efficient)",
-                        plan.light_paths ? "" : ", caustics by chance", plan.gain_of_light_paths);
+    name += fmt::format("{} (by a pilot, paths from lights are {} as efficient)",
+                        plan.light_paths ? "" : ", caustics by chance", times(plan.gain_of_light_paths));
   if (plan.suffixes > 0 && plan.gain_of_reconstruction > 0)
     name +=
-        fmt::format(", image from {} (by a pilot, differences are {:.2g} times as efficient at 4 samples)",
-                    plan.reconstruct ? "differences of pixels" : "means", plan.gain_of_reconstruction);
+        fmt::format(", image from {} (by a pilot, differences are {} as efficient at 4 samples)",
+                    plan.reconstruct ? "differences of pixels" : "means", times(plan.gain_of_reconstruction));
   return name + (plan.mis ? ", MIS" : "");
 }
 
