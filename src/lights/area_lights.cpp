@@ -22,43 +22,47 @@ Corners corners(const Scene& scene, std::uint32_t triangle) {
 }  // namespace
 
 template <class T>
-AreaLights<T>::AreaLights(const Scene& scene) : scene_(scene), material_density_(scene.materials.size()) {
+AreaLights<T>::AreaLights(const Scene& scene)
+    : scene_(scene), cells_(scene), material_density_(scene.materials.size()) {
   double power = 0;
-  const std::vector<Vec3d> mean = mean_emissions(scene);
   std::vector<double> powers;
   for (const std::uint32_t i : scene.lights) {
     const Corners c = corners(scene, i);
     const Material& material = scene.material_of(i);
     const Vec3d normal = c.twice_area();
-    const double area = length(normal) / 2;
-    powers.push_back(area * luminance(mean[scene.triangle_material[i]]));
-    power += powers.back();
-    cumulative_.push_back(power);
-    triangles_.push_back({Vec3<T>(c.v0), Vec3<T>(c.v1), Vec3<T>(c.v2), Vec3<T>(normalize(normal)),
-                          Vec3<T>(material.ke * material.coverage), T(0), T(0), i,
-                          material.two_sided_emission});
+    for (const EmissionCell& cell : cells_.of(i)) {
+      powers.push_back(length(normal) / 2 * cell.step * cell.step * luminance(cell.emission));
+      power += powers.back();
+      cumulative_.push_back(power);
+      triangles_.push_back({Vec3<T>(c.v0), Vec3<T>(c.v1), Vec3<T>(c.v2), Vec3<T>(normalize(normal)),
+                            Vec3<T>(material.ke * material.coverage), T(0),
+                            TrianglePlace<T>{i, T(cell.b1), T(cell.b2)}, T(cell.step),
+                            material.two_sided_emission});
+    }
   }
   for (double& c : cumulative_) c /= power;
+  const std::vector<Vec3d> mean = mean_emissions(scene);
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     material_density_[m] = power > 0 ? static_cast<T>(luminance(mean[m]) / power) : T(0);
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+  for (std::size_t i = 0; i < triangles_.size(); ++i)
     triangles_[i].choice = static_cast<T>(powers[i] / power);
-    triangles_[i].pdf_area = material_density_[scene.triangle_material[triangles_[i].index]];
-  }
 }
 
 template <class T>
 LightPoint<T> AreaLights<T>::sample(double u_choice, Point2<T> u) const {
   const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u_choice);
   const Triangle& t = triangles_[static_cast<std::size_t>(found - cumulative_.begin())];
+  TrianglePlace<T> place = t.corner;
   const auto [b1, b2] = uniform_triangle(u);
-  const TrianglePoint<T> point = point_on_triangle(t.v0, t.v1, t.v2, b1, b2);
+  place.b1 += t.step * b1;
+  place.b2 += t.step * b2;
+  const TrianglePoint<T> point = point_on_triangle(t.v0, t.v1, t.v2, place.b1, place.b2);
   Vec3<T> radiance = t.radiance;
-  if (const Material& m = scene_.material_of(t.index); m.has_emission_map()) {
-    const SurfaceValues<T> values = surface_values(scene_, m, TrianglePlace<T>{t.index, b1, b2});
+  if (const Material& m = scene_.material_of(place.triangle); m.has_emission_map()) {
+    const SurfaceValues<T> values = surface_values(scene_, m, place);
     radiance = values.color(slot_emission) * values.at(slot_coverage);
   }
-  return {point.p, point.error, t.normal, radiance, t.pdf_area, t.choice, t.index, t.two_sided};
+  return {point.p, point.error, t.normal, radiance, pdf_area(place), t.choice, place.triangle, t.two_sided};
 }
 
 template class AreaLights<float>;

@@ -4,6 +4,8 @@
 
 #include "castray/scene.h"
 #include "core/warp.h"
+#include "lights/emission_cells.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -20,9 +22,8 @@ struct LightPoint {
   bool two_sided = false;
 };
 
-/// All emissive triangles of a scene, which must outlive it. One is chosen with a probability proportional to
-/// its area times the luminance of its mean emission, then a point uniform on it: the density of a point
-/// depends on its material only.
+/// All emissive triangles of a scene, which must outlive it, or their cells. One is chosen with a probability
+/// proportional to its area times the luminance of its emission, then a point uniform on it.
 template <class T>
 class AreaLights {
  public:
@@ -33,18 +34,23 @@ class AreaLights {
   /// A point for u_choice in [0,1) and u. Not to be called where empty().
   LightPoint<T> sample(double u_choice, Point2<T> u) const;
 
-  /// The density, per area, with which `sample` returns a given point of a triangle of `material`.
-  T pdf_area(std::size_t material) const { return material_density_[material]; }
+  /// The density, per area, with which `sample` returns a given point of a triangle that emits.
+  T pdf_area(const TrianglePlace<T>& at) const {
+    return material_density_[scene_.triangle_material[at.triangle]] *
+           static_cast<T>(cells_.share(at.triangle, at.b1, at.b2));
+  }
 
  private:
   struct Triangle {
     Vec3<T> v0, v1, v2, normal, radiance;
-    T pdf_area, choice;
-    std::uint32_t index;
+    T choice;
+    TrianglePlace<T> corner;  ///< where it begins in the scene's triangle, and
+    T step;                   ///< what barycentrics grow by along its edges
     bool two_sided;
   };
 
   const Scene& scene_;
+  EmissionCells cells_;
   std::vector<Triangle> triangles_;
   std::vector<double> cumulative_;  ///< probability of choosing one of the lights 0..i
   std::vector<T> material_density_;

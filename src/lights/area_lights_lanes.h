@@ -56,9 +56,15 @@ CASTRAY_INLINE LightPoint sample_area_light(const LightList& list, const LightCh
   const Float inverse_density =
       select(chosen.probability > Float(0.f), area / chosen.probability, Float(0.f));
   Vec emission = light.emission;
-  if (list.materials)
-    resolve_emission(*list.materials, *list.triangles, light.material * uint32_t{material_floats},
-                     {light.source, a, b}, emission);
+  if (list.materials) {
+    const Uint record = chosen.light * uint32_t{light_floats};
+    const float* corner = fields_of(list.lights, &KernelLight::corner);
+    const Float step = gather(list.lights, &KernelLight::step, record);
+    const TrianglePlace place{light.source, fma(step, a, gather(corner, record)),
+                              fma(step, b, gather(corner + 1, record))};
+    resolve_emission(*list.materials, *list.triangles, light.material * uint32_t{material_floats}, place,
+                     emission);
+  }
   return {p,           light.normal, emission * inverse_density, light.density, light.two_sided, light.error,
           Mask(false), light.node};
 }

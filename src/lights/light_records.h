@@ -15,7 +15,9 @@ struct KernelLight {
   float area;
   uint32_t triangle;  ///< 1: a triangle
   uint32_t material;  ///< its number
-  uint32_t source;    ///< the scene's triangle, if it is one: its corners are origin, + edge1, + edge2
+  uint32_t source;    ///< the scene's triangle, if it is one
+  float corner[2];    ///< of a triangle: the barycentrics of its origin in the source, and
+  float step;         ///< what both grow by along its edges; (0,0) and 1 where it is all of it
   uint32_t two_sided;
   float error;    ///< bound of the distance of a computed point from the exact light
   float density;  ///< area pdf of power-proportional sampling; used for MIS even when importance chose the
@@ -93,6 +95,14 @@ struct DeltaList {
 struct MaterialTables;
 struct TriangleTable;
 
+/// EmissionCells, as kernels read them.
+inline constexpr uint32_t no_cells = 0xffffffff;
+struct CellTable {
+  const uint32_t* first;  ///< by triangle, into `shares`, or no_cells; null: no triangle has any
+  const float* shares;    ///< of the lower and the upper half of each square of a grid of steps x steps
+  float steps;
+};
+
 /// All lights of a scene.
 struct LightList {
   const KernelLight* lights;
@@ -107,6 +117,7 @@ struct LightList {
                         ///< light
   const MaterialTables* materials;  ///< where an image says what some light emits; else null
   const TriangleTable* triangles;   ///< likewise
+  CellTable cells;
   LightRegions regions;
 };
 

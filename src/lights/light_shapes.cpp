@@ -27,6 +27,7 @@ KernelLight facet_light(const Facet& f, const Material& material, const Vec3d& e
   light.two_sided = material.two_sided_emission;
   light.rectangle = std::abs(dot(b - a, d - a)) <= 1e-6 * length(b - a) * length(d - a);
   light.error = f.error;
+  light.step = 1;
   return light;
 }
 
@@ -42,6 +43,26 @@ KernelLight triangle_light(const Facet& f, int first, const Material& material, 
   return light;
 }
 
+/// A part of a triangle, or all of it.
+KernelLight part_of(const KernelLight& whole, const EmissionCell& cell) {
+  constexpr float rounding = 0x1p-22f;  // of its corners, which are in [-1,1]
+  KernelLight part = whole;
+  put(part.emission, cell.emission);
+  if (cell.step == 1) return part;
+  for (int c = 0; c < 3; ++c) {
+    part.origin[c] =
+        static_cast<float>(whole.origin[c] + cell.b1 * whole.edge1[c] + cell.b2 * whole.edge2[c]);
+    part.edge1[c] = static_cast<float>(cell.step * whole.edge1[c]);
+    part.edge2[c] = static_cast<float>(cell.step * whole.edge2[c]);
+  }
+  part.area = static_cast<float>(cell.step * cell.step * whole.area);
+  part.corner[0] = static_cast<float>(cell.b1);
+  part.corner[1] = static_cast<float>(cell.b2);
+  part.step = static_cast<float>(cell.step);
+  part.error = whole.error + rounding;
+  return part;
+}
+
 bool is_parallelogram(const Facet& f) {
   double size = 0, gap = 0;
   for (int c = 0; c < 3; ++c) {
@@ -53,7 +74,8 @@ bool is_parallelogram(const Facet& f) {
 
 }  // namespace
 
-std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Scene& scene) {
+std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Scene& scene,
+                                      const EmissionCells& cells) {
   const std::vector<Vec3d> mean = mean_emissions(scene);
   std::vector<KernelLight> lights;
   for (const Facet& f : facets) {
@@ -61,7 +83,8 @@ std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Sc
     const Vec3d& emission = mean[f.material];
     if (!material.emits()) continue;
     if (f.triangle[0] == f.triangle[1]) {
-      lights.push_back(triangle_light(f, 0, material, emission));
+      const KernelLight whole = triangle_light(f, 0, material, emission);
+      for (const EmissionCell& cell : cells.of(f.triangle[0])) lights.push_back(part_of(whole, cell));
     } else if (is_parallelogram(f)) {
       lights.push_back(facet_light(f, material, emission));
     } else {

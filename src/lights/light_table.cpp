@@ -44,7 +44,7 @@ double sort_and_weigh(std::vector<KernelLight>& lights) {
 }  // namespace
 
 LightTable::LightTable(const Scene& scene, const std::vector<Facet>& facets, bool by_importance, int threads)
-    : lights_(light_shapes(facets, scene)), power_(sort_and_weigh(lights_)) {
+    : cells_(scene), lights_(light_shapes(facets, scene, cells_)), power_(sort_and_weigh(lights_)) {
   if (by_importance && lights_.size() > 1) tree_ = LightTree(lights_, threads);
 }
 
@@ -55,6 +55,7 @@ LightList LightTable::list() const {
   list.cut = tree_.cut().data();
   list.cut_count = static_cast<std::uint32_t>(tree_.cut().size());
   list.tree = tree_.pairs().data();
+  list.cells = cells_.table();
   if (regions_) {
     list.regions = regions_->view();
     list.regions.node_of_primitive = node_of_primitive_.data();

@@ -5,6 +5,7 @@
 
 #include "castray/scene.h"
 #include "geometry/facet_records.h"
+#include "lights/emission_cells.h"
 #include "lights/light_records.h"
 #include "lights/light_regions.h"
 #include "lights/light_tree.h"
@@ -35,10 +36,12 @@ class LightTable {
   /// triangles, of which there are `triangles`.
   void use(LightRegionTable regions, const std::vector<Facet>& facets, bool list, std::size_t triangles);
 
-  /// Area pdf of points on `material`, whose emission has this mean, under power-proportional light sampling.
+  /// Area pdf of points on `material`, whose emission has this mean, under power-proportional light sampling;
+  /// where triangles have cells, to be multiplied by theirs.
   float density(const Material& material, const Vec3d& mean_emission) const;
 
  private:
+  EmissionCells cells_;
   std::vector<KernelLight> lights_;
   double power_ = 0;  ///< over pi, of all
   LightTree tree_;    ///< empty: chosen by power

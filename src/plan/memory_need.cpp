@@ -18,8 +18,8 @@ constexpr TreeBytes small_fast_tree{130, 58}, fast_tree{80, 58}, cut_tree{440, 1
 constexpr std::uint64_t bytes_of_any_tree = 2 << 20;
 constexpr std::uint64_t bytes_of_instance = 400;  ///< matrices, references, and nodes over it
 constexpr std::uint64_t bytes_of_facet = 650;     ///< of a list, while pairs of triangles are found
-constexpr std::uint64_t bytes_of_light = 700;     ///< of an emitting triangle: facet, light, light tree
-constexpr std::uint64_t bytes_of_reference_light = 130;  ///< likewise
+constexpr std::uint64_t bytes_of_light = 730;     ///< of an emitting triangle: facet, light, light tree
+constexpr std::uint64_t bytes_of_reference_light = 150;  ///< likewise
 constexpr std::uint64_t bytes_of_texel = 16;             ///< of the environment: radiance and probability
 constexpr std::uint64_t bytes_of_any_scene = 2 << 20;
 

@@ -154,7 +154,7 @@ class CastRay {
     if (!arrival.counts || !material.emits() || !(cosine > 0 || material.two_sided_emission)) return {};
     const Vec3<T>& le = x.emission;
     if (!arrival.shared) return le;
-    const T light_pdf = lights_.pdf_area(x.material) * distance * distance / std::abs(cosine);
+    const T light_pdf = lights_.pdf_area(x.place) * distance * distance / std::abs(cosine);
     return le * bsdf_share(light_pdf, arrival.pdf);
   }
 

@@ -22,7 +22,7 @@ struct Surface {
   Vec3<T> wo;         ///< to_viewer in the shading frame
   Bsdf<T> bsdf;
   Vec3<T> emission;  ///< of the side that emits
-  std::uint32_t triangle = Scene::no_index;
+  TrianglePlace<T> place{Scene::no_index, 0, 0};
   std::uint16_t material = 0;
 
   /// Whether wi, sampled or evaluated in the shading frame as `local`, is on the same side of the real
@@ -74,7 +74,7 @@ class Surfaces {
                        frame.to_local(to_viewer),
                        materials_[material],
                        Vec3<T>(m.ke),
-                       hit.triangle,
+                       place,
                        material};
     if (m.has_maps() || m.vertex_colors) {
       const SurfaceValues<T> values = surface_values(scene_, m, place);

@@ -66,6 +66,7 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
   absorb<Geometry>(c, s.hits, true, s.paths);
   surfaces<Geometry, features, false>(c, s.paths, s.hits, false, s.suffixes.y, s.radiance);
   keep_suffix_ends(c, features & feature_detail, s.suffixes);
+  if (c.scene.lights.cells.first) scale_by_cells(c, s.paths.count, s.hits, s.suffixes);
   if (c.scene.lights.regions.tree) scale_light_density(c, s.paths.count, s.hits, s.lights, s.suffixes);
   if constexpr (features & feature_materials) {
     split_suffixes(c.scene, x, s.suffixes, s.glossy, s.vertices);

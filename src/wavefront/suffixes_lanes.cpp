@@ -1,5 +1,6 @@
 #include "wavefront/suffixes_lanes.h"
 
+#include "lights/emission_cells_lanes.h"
 #include "lights/environment_lanes.h"
 #include "lights/lights_lanes.h"
 #include "wavefront/shading_lanes.h"
@@ -25,6 +26,23 @@ void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes
     store(suffixes.emission, i, found.emission);
   }
   for (int k = 0; k < y.count; ++k) suffixes.landed[y.names.slot[k] - batch_size] = (uint32_t)k + 1;
+}
+
+/// Of the lights that rays i to i + width - 1 hit.
+CASTRAY_INLINE Float share_of_cells(const Context& c, const Hits& hits, int i, Mask hit) {
+  const Uint triangle = select(hit, load(hits.primitive + i), Uint(0u));
+  return cell_share(c.scene.lights.cells, triangle, load(hits.b1 + i), load(hits.b2 + i));
+}
+
+void scale_by_cells(const Context& c, int rays, const Hits& hits, Suffixes& suffixes) {
+  alignas(64) FloatArray share;
+  int n = 0;
+  for (int i = 0; i < rays; i += width) {
+    const Mask hit = first_lanes(rays - i) & ~(load(hits.primitive + i) == Uint(no_hit));
+    compress_store(share + n, hit, share_of_cells(c, hits, i, hit));
+    n += count(hit);
+  }
+  for (int k = 0; k < n; ++k) suffixes.light_density[k] *= share[k];
 }
 
 void scale_light_density(const Context& c, int rays, const Hits& hits, const TileLights* lights,
@@ -60,6 +78,7 @@ void keep_found_light(const Context& c, bool emission_varies, const Paths& rays,
       const Uint node = gather(regions.node_of_primitive, primitive);
       pdf = pdf * relative_density(regions, load(rays.o, i), wi, node);
     }
+    if (c.scene.lights.cells.first) pdf *= share_of_cells(c, hits, i, ~escaped);
     const EscapedLight sky = light_from(c.scene.lights.environment, wi);
     const Vec outside = select((sky.density > Float(0.f)) & Mask(c.options.mis), sky.radiance, black());
     const Vec emission = select(ends_leave_lamps(c, suffixes, z, i), black(), lamp.emission);

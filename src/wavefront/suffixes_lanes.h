@@ -52,6 +52,10 @@ CASTRAY_INLINE void keep_of_suffixes(float* to, const Vertices& y, int i, Float 
 /// their emission; otherwise it is their material's.
 void keep_suffix_ends(const Context& c, bool emission_varies, Suffixes& suffixes);
 
+/// Makes light_density that of the cells of emitting triangles, where they have any. `hits`: of the `rays`
+/// that found the vertices y.
+void scale_by_cells(const Context& c, int rays, const Hits& hits, Suffixes& suffixes);
+
 /// Makes light_density that of each tile's light points, where regions of lights are known. `hits`: of the
 /// suffixes' rays.
 void scale_light_density(const Context& c, int rays, const Hits& hits, const TileLights* lights,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/emission_cells_lanes.h"
 #include "lights/environment_lanes.h"
 #include "lights/light_share_lanes.h"
 #include "lights/lights_lanes.h"
@@ -75,6 +76,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
         Float relative(1.f);
         if (c.options.mis && regions.tree)
           relative = relative_density(regions, o, d, gather(regions.node_of_primitive, primitive));
+        if (scene.lights.cells.first) relative *= cell_share(scene.lights.cells, primitive, b1, b2);
         const Vec emission =
             found_emission(scene, material, parameters, front, arrival, t, towards, relative);
         radiance.add(paths.names.slot + i, counts, throughput * emission);
