@@ -142,10 +142,12 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain) {
   plan.kernel = kernel_name(plan);
 }
 
-void choose_by_pilot(Plan& plan, double gain_of_sharing) {
-  if (gain_of_sharing < 1) plan.suffixes = 0;
-  plan.kernel = fmt::format("{} (by a pilot, sharing is {:.2g} times as efficient as plain paths)",
-                            kernel_name(plan), gain_of_sharing);
+void choose_by_pilot(Plan& plan, double gain_of_sharing, double error) {
+  constexpr double enough = 1.5;
+  if (gain_of_sharing < std::min(error, enough)) plan.suffixes = 0;
+  plan.kernel = fmt::format(
+      "{} (by a pilot, sharing is {} as efficient as plain paths, give or take a factor of {:.2g})",
+      kernel_name(plan), times(gain_of_sharing), error);
 }
 
 }  // namespace castray

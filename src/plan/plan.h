@@ -50,8 +50,8 @@ void choose_caustics(Plan& plan, double gain_of_light_paths);
 /// asked.
 void choose_reconstruction(Plan& plan, std::optional<double> gain);
 
-/// Takes what does better, if shared paths are that many times as efficient as plain ones, and says so in
-/// Plan::kernel.
-void choose_by_pilot(Plan& plan, double gain_of_sharing);
+/// Takes shared paths if these are that many times as efficient as plain ones and it is more than the
+/// standard error, a factor, or than 1.5. Says so in Plan::kernel.
+void choose_by_pilot(Plan& plan, double gain_of_sharing, double error);
 
 }  // namespace castray

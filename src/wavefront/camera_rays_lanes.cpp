@@ -32,16 +32,17 @@ CASTRAY_INLINE void find_edges(const Context& c, bool ragged, TileResult& result
 void place_pixels(const Context& c, TileResult& result) {
   const bool ragged = c.job.sample < c.options.ragged, in_strips = ragged && c.scene.edges.kinds;
   const uint32_t key = lane(hash_combine(Uint(c.options.seed ^ 0x3a99edu), Uint((uint32_t)c.job.sample)), 0);
-  const Uint left((uint32_t)(c.job.grid_x * tile_size)), top((uint32_t)(c.job.grid_y * tile_size));
   for (int i = 0; i < c.job.tiles * tile_pixels; i += width) {
+    const TilePlace tile = place_of(c.job, i / tile_pixels);
+    const Uint left((uint32_t)(tile.grid_x * tile_size)), top((uint32_t)(tile.grid_y * tile_size));
     const Uint entry = Uint((uint32_t)i) + lane_index();
-    Uint x = left + ((entry >> 6) << 3) + (entry & 7u), y = top + ((entry >> 3) & 7u);
+    Uint x = left + (entry & 7u), y = top + ((entry >> 3) & 7u);
     if (ragged && !in_strips) {
       x = swap_across_edge(key, x, y);
       y = swap_across_edge(key + 1, y, x);
     }
-    store(result.x + i, x - left + Uint((uint32_t)c.job.x));
-    store(result.y + i, y - top + Uint((uint32_t)c.job.y));
+    store(result.x + i, x - left + Uint((uint32_t)tile.x));
+    store(result.y + i, y - top + Uint((uint32_t)tile.y));
   }
   for (int tile = 0; in_strips && tile < c.job.tiles; ++tile) place_in_strips(c, key, tile, result);
   if (c.scene.edges.kinds) find_edges(c, ragged, result);

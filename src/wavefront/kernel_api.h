@@ -53,6 +53,16 @@ struct KernelOptions {
   uint32_t seed;           ///< hashed; what pixel keys start from
 };
 
+inline constexpr int tile_size = 8;
+inline constexpr int tile_pixels = tile_size * tile_size;
+inline constexpr int max_tiles = 8;  ///< of a job
+inline constexpr int batch_size = tile_pixels * max_tiles;
+
+/// Top left pixel of a tile, in the full image, and its place in the grid of tiles.
+struct TilePlace {
+  int x, y, grid_x, grid_y;
+};
+
 /// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.
 struct TileJob {
   int x, y;            ///< top left pixel in the full image; may lie outside
@@ -61,12 +71,9 @@ struct TileJob {
   uint64_t sample;
   uint64_t edge_sample = 0;  ///< pixels that see an edge have the camera ray of this sample under `edge_seed`
   uint32_t edge_seed = 0;
+  /// By tile, where it is, if tiles are not side by side; these have no ragged edges. Null: side by side.
+  const TilePlace* places = nullptr;
 };
-
-inline constexpr int tile_size = 8;
-inline constexpr int tile_pixels = tile_size * tile_size;
-inline constexpr int max_tiles = 8;  ///< of a job
-inline constexpr int batch_size = tile_pixels * max_tiles;
 
 /// How far outside its tile a pixel of a ragged tile lies at most.
 inline constexpr int ragged_reach = tile_size / 2;

@@ -1,10 +1,13 @@
 #include "wavefront/pilot.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <vector>
 
 #include "castray/vec.h"
 #include "core/sequences.h"
+#include "core/warp.h"
 
 namespace castray {
 
@@ -28,21 +31,26 @@ struct SplatSums {
   }
 };
 
-constexpr std::size_t pilot_batches = 64;
+/// Of light paths: one for every second pixel, within bounds.
+std::size_t batches_of(const Pilot& pilot) {
+  constexpr std::size_t fewest = 8, most = 64;
+  const std::size_t pixels = static_cast<std::size_t>(pilot.width) * static_cast<std::size_t>(pilot.height);
+  return std::clamp(pixels / (2 * batch_size), fewest, most);
+}
 
 /// Means over the light paths of a pilot.
 SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const LightPathsJob& light_paths_job) {
   options.seed = hash_combine(0x9170fu, 0u);
-  std::vector<SplatSums> batches(pilot_batches);
+  std::vector<SplatSums> batches(batches_of(pilot));
 #pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
-  for (std::size_t i = 0; i < pilot_batches; ++i) {
+  for (std::size_t i = 0; i < batches.size(); ++i) {
     const SplatSink sink{
         &batches[i], [](void* self, const Splats& splats) { static_cast<SplatSums*>(self)->add(splats); }};
     const LightPathJob job{0, i * batch_size, batch_size, pilot.width, pilot.height};
     batches[i].rays = static_cast<double>(light_paths_job(options, job, sink));
   }
   SplatSums means;  // in the batches' order, whatever the threads
-  constexpr double share = 1.0 / double(pilot_batches * batch_size);
+  const double share = 1.0 / static_cast<double>(batches.size() * batch_size);
   for (const SplatSums& batch : batches) {
     means.radiance += batch.radiance * share;
     means.by_light += batch.by_light * share;
@@ -69,11 +77,13 @@ struct Products {
 };
 
 /// From a pilot's samples to 64 the error of shared paths grows that many times, beside that of plain ones,
-/// which are stratified over all samples of a pixel. It is not taken to fall.
+/// which are stratified over all samples of a pixel: by a tenth at least in each step, as on scenes of many
+/// kinds.
 double growth_beside_plain(const Ways& ways) {
   const auto remains = [](const TechniqueFigures& f) { return f.error / f.single_error; };
+  constexpr double least = 1.1, most = 1.5;
   if (!(ways.plain.error > 0) || !(ways.shared.error > 0)) return 1;
-  const double growth = std::clamp(remains(ways.shared) / remains(ways.plain), 1.0, 1.5);
+  const double growth = std::clamp(remains(ways.shared) / remains(ways.plain), least, most);
   return growth * growth;  // 4 to 64 are two steps of 1 to 4
 }
 
@@ -137,35 +147,122 @@ std::vector<KernelOptions> techniques_of(const KernelOptions& options, bool both
   return techniques;
 }
 
+/// What gains are computed from, but for the figures of tiles.
+struct Question {
+  OpenChoices open;
+  bool by_lights;    ///< caustics may be brought by light paths
+  bool both;         ///< it is open whether they are
+  bool list;         ///< as in Pilot
+  std::size_t ways;  ///< 2: shared and plain paths; 1: plain ones
+  SplatSums splats;
+};
+
+/// `figures`: of techniques_of.
+Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) {
+  const Ways rest{figures[0], figures[q.ways - 1]};
+  Gains gains;
+  if (!q.by_lights) {
+    gains.sharing_by_chance = products_of(rest, rest, 0, 0, 0).sharing();
+    gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, 0, 0, q.list);
+    return gains;
+  }
+  const double rays = q.splats.rays;
+  const CausticErrors caustics(q.splats, rest.plain.brightness);
+  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, rays);
+  gains.sharing_by_lights = by_light.sharing();
+  gains.reconstruction_by_lights = gain_of_reconstruction(rest.shared, caustics.by_light, rays, q.list);
+  if (!q.both || !(max_component(q.splats.radiance) > 0)) return gains;
+  const Ways chance{figures[q.ways], figures.back()};
+  const double left = left_by_sharing(rest, chance, caustics.by_chance);
+  const Products by_chance = products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0);
+  gains.sharing_by_chance = by_chance.sharing();
+  gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, caustics.by_chance * left, 0, q.list);
+  gains.light_paths = by_chance.least(q.open.sharing) / by_light.least(q.open.sharing);
+  return gains;
+}
+
+/// Logarithms of the gains of what is open: of light paths, and with caustics as these are chosen, of sharing
+/// and of reconstruction.
+enum Choice { of_light_paths, of_sharing, of_reconstruction, choices };
+using LogGains = std::array<std::optional<double>, choices>;
+using LogErrors = std::array<double, choices>;
+
+LogGains log_gains(const Question& q, const std::vector<TechniqueFigures>& figures) {
+  const Gains g = gains_of(q, figures);
+  const bool lights = q.by_lights && g.light_paths.value_or(1) >= 1;
+  LogGains log{g.light_paths, lights ? g.sharing_by_lights : g.sharing_by_chance,
+               lights ? g.reconstruction_by_lights : g.reconstruction_by_chance};
+  if (!q.open.sharing) log[of_sharing].reset();
+  if (!q.open.reconstruction || log[of_sharing].value_or(1) < 1) log[of_reconstruction].reset();
+  for (std::optional<double>& gain : log) {
+    if (gain && !(*gain > 0)) gain.reset();
+    if (gain) *gain = std::log(*gain);
+  }
+  return log;
+}
+
+/// The standard error of each logarithm of `gains`, by the jackknife over tiles. Of noise that few tiles have
+/// met it tells nothing, so a factor of 1.6 in each tile is added, but for reconstruction, which counts one
+/// more noisy tile itself.
+LogErrors errors_of(const Question& q, const TileTrials& trials, const LogGains& gains) {
+  constexpr double unseen = 0.25;  // squared log of that factor
+  const double n = static_cast<double>(trials.tiles());
+  LogErrors variance{unseen / n, unseen / n, 0};
+  for (std::size_t tile = 0; tile < trials.tiles(); ++tile) {
+    const LogGains without = log_gains(q, trials.figures_without(tile));
+    for (std::size_t k = 0; k < gains.size(); ++k) {
+      const double change = without[k].value_or(0) - gains[k].value_or(0);
+      variance[k] += change * change * (n - 1) / n;
+    }
+  }
+  for (double& v : variance) v = std::sqrt(v);
+  return variance;
+}
+
+/// By how much a choice by `log_gain` is expected to fall short of the better one, if its error is normal.
+double expected_loss(double log_gain, double error) {
+  const double z = std::abs(log_gain) / error;
+  const double density = std::exp(-z * z / 2) / std::sqrt(2 * pi<double>),
+               beyond = std::erfc(z / std::sqrt(2.0)) / 2;
+  return error * (density - z * beyond);
+}
+
+/// What one more group of tiles takes, as a part of an image of few samples, of the cheapest technique.
+double cost_of_group(const Pilot& pilot, const std::vector<TechniqueFigures>& figures) {
+  constexpr double few_samples = 32;
+  double sum = 0, least = figures.front().cost;
+  for (const TechniqueFigures& f : figures) {
+    sum += f.cost;
+    least = std::min(least, f.cost);
+  }
+  const double pixels = double(pilot.width) * pilot.height;
+  return least > 0 ? sum * group_samples / (least * few_samples * pixels) : 0;
+}
+
+/// Whether all that is open can be chosen, with a loss that another group of tiles would not make up for.
+bool is_clear(const Question& q, const Pilot& pilot, const TileTrials& trials) {
+  const std::vector<TechniqueFigures> figures = trials.figures();
+  const double worthwhile = cost_of_group(pilot, figures);
+  const LogGains gains = log_gains(q, figures);
+  const LogErrors errors = errors_of(q, trials, gains);
+  for (std::size_t k = 0; k < gains.size(); ++k)
+    if (gains[k] && expected_loss(*gains[k], errors[k]) > worthwhile) return false;
+  return true;
+}
+
 }  // namespace
 
 Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenChoices& open,
                  const LightPathsJob& light_paths_job) {
   const bool both = options.light_paths && open.caustics;
-  const std::vector<TechniqueFigures> figures = try_techniques(pilot, techniques_of(options, both));
-  if (figures.empty()) return {};
-  const std::size_t ways = options.suffixes > 0 ? 2 : 1;
-  const Ways rest{figures[0], figures[ways - 1]};
-  Gains gains;
-  if (!options.light_paths) {
-    gains.sharing_by_chance = products_of(rest, rest, 0, 0, 0).sharing();
-    gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, 0, 0, pilot.list);
-    return gains;
+  TileTrials trials(pilot, techniques_of(options, both));
+  if (!trials.try_more()) return {};
+  Question q{open, options.light_paths, both, pilot.list, options.suffixes > 0 ? 2u : 1u, {}};
+  if (options.light_paths) q.splats = try_light_paths(pilot, options, light_paths_job);
+  while (!is_clear(q, pilot, trials) && trials.try_more()) {
   }
-  const SplatSums splats = try_light_paths(pilot, options, light_paths_job);
-  const CausticErrors caustics(splats, rest.plain.brightness);
-  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, splats.rays);
-  gains.sharing_by_lights = by_light.sharing();
-  gains.reconstruction_by_lights =
-      gain_of_reconstruction(rest.shared, caustics.by_light, splats.rays, pilot.list);
-  if (!both || !(max_component(splats.radiance) > 0)) return gains;
-  const Ways chance{figures[ways], figures.back()};
-  const double left = left_by_sharing(rest, chance, caustics.by_chance);
-  const Products by_chance = products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0);
-  gains.sharing_by_chance = by_chance.sharing();
-  gains.reconstruction_by_chance =
-      gain_of_reconstruction(rest.shared, caustics.by_chance * left, 0, pilot.list);
-  gains.light_paths = by_chance.least(open.sharing) / by_light.least(open.sharing);
+  Gains gains = gains_of(q, trials.figures());
+  gains.sharing_error = std::exp(errors_of(q, trials, log_gains(q, trials.figures()))[of_sharing]);
   return gains;
 }
 

@@ -20,6 +20,7 @@ struct Gains {
   std::optional<double>
       sharing_by_lights;  ///< of shared over plain paths, with caustics by paths from lights
   std::optional<double> sharing_by_chance;  ///< the same with caustics by chance
+  double sharing_error = 1;                 ///< the standard error of the gain of sharing, as a factor
   /// Of images from differences of pixels over those from means, at few samples and with shared paths.
   std::optional<double> reconstruction_by_lights, reconstruction_by_chance;
 };
@@ -35,6 +36,9 @@ struct OpenChoices {
 /// expected to be at 64. The variance that chance brings is computed from light paths, each of which says how
 /// much a path from the camera would bring that finds the same one: so caustics that are too rare for a pilot
 /// to find are not missed. Where its tiles find them often, these tell how much of it sharing leaves.
+///
+/// Tiles are tried in groups, until what a wrong choice is expected to lose is less than the time that
+/// another group would take.
 ///
 /// A function of the scene, the image's full size and the options but their seed: never of time, threads, or
 /// the part of the image or of its samples that is wanted. So parts of one image agree. None of the pilot's

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/sequences.h"
 
@@ -11,8 +12,9 @@ namespace castray {
 namespace {
 
 /// Of the image's tiles, one in so many; and no more than suffice.
-constexpr int sparseness = 8, most_tiles = 48, fewest_tiles = 8;
+constexpr int sparseness = 8, most_tiles = 48;
 constexpr std::size_t replicates = 2, samples = 4;
+static_assert(group_samples == replicates * samples * batch_size);
 
 /// In rays: what a pixel's gathering from one thing that a tile shares costs where a shaft answers for the
 /// tile, and where a ray is asked; and the BSDFs that this evaluates. Fitted to the times of scenes of many
@@ -31,67 +33,84 @@ double cost_of(const TileResult& r, const Costs& costs) {
 
 using TilePixels = std::array<Vec3d, tile_pixels>;
 
+/// Tiles of 8x8 pixels, the last one perhaps in part.
+int tiles_along(int pixels) { return (pixels + tile_size - 1) / tile_size; }
+
 /// What one technique made of one tile.
 struct TileRun {
   TilePixels sample[replicates][samples] = {};
-  double cost = 0;  ///< in rays
 };
 
-struct Tile {
-  int x, y;  ///< in the grid
-};
+/// Tiles of one group, which one job renders.
+using Group = std::array<TilePlace, max_tiles>;
 
-/// A point set of low discrepancy over the grid (Hammersley's, by the golden ratio).
-std::vector<Tile> spread_tiles(const Pilot& pilot) {
-  const auto in_tiles = [](int pixels) { return (pixels + tile_size - 1) / tile_size; };
-  const int columns = in_tiles(pilot.width), rows = in_tiles(pilot.height);
-  const int count = std::min(most_tiles, columns * rows / sparseness);
-  std::vector<Tile> tiles;
-  for (int i = 0; count >= fewest_tiles && i < count; ++i) {
-    constexpr double golden = 0.6180339887498949;
-    const double u = (i + 0.5) / count, v = (i + 0.5) * golden - std::floor((i + 0.5) * golden);
-    tiles.push_back({static_cast<int>(u * columns), static_cast<int>(v * rows)});
+/// Point `number` of a sequence of low discrepancy over the grid (Roberts 2018, R2).
+TilePlace tile_at(const Pilot& pilot, std::size_t number) {
+  const auto at = [number](int pixels, double step) {
+    const double u = 0.5 + static_cast<double>(number) * step;
+    return static_cast<int>((u - std::floor(u)) * tiles_along(pixels));
+  };
+  const int x = at(pilot.width, 0.7548776662466927), y = at(pilot.height, 0.5698402909980532);
+  return {x * tile_size, y * tile_size, x, y};
+}
+
+/// As in a render, whose grid moves with every sample, a tile is not the same one of the grid in each.
+Group in_moved_grid(Group tiles, std::uint32_t seed, std::uint32_t sample) {
+  const std::uint32_t moved = hash_combine(seed, sample);
+  for (TilePlace& tile : tiles) {
+    tile.grid_x += static_cast<int>(moved & 1);
+    tile.grid_y += static_cast<int>(moved >> 1 & 1);
   }
   return tiles;
 }
 
-/// A sample of a tile. As in a render, whose grid moves with every sample, the tile is not the same one of
-/// the grid in each.
-TileJob job_of(const Tile& tile, std::uint32_t seed, std::uint32_t sample) {
-  const std::uint32_t moved = hash_combine(seed, sample);
-  return {.x = tile.x * tile_size,
-          .y = tile.y * tile_size,
-          .grid_x = tile.x + static_cast<int>(moved & 1),
-          .grid_y = tile.y + static_cast<int>(moved >> 1 & 1),
-          .tiles = 1,
-          .sample = sample};
-}
+/// What one technique made of the tiles of a group.
+struct GroupRun {
+  std::array<TileRun, max_tiles> tiles;
+  double cost[replicates][samples] = {};  ///< in rays
+};
 
-TileRun render_tile(const Pilot& pilot, KernelOptions options, const Tile& tile) {
+void render_sample(const Pilot& pilot, KernelOptions options, const Group& group, std::uint32_t replicate,
+                   std::uint32_t sample, GroupRun& run) {
   options.ragged = 0;  // each pixel keeps its place in the result
-  std::uint32_t x[batch_size], y[batch_size];
-  std::vector<float> radiance(3 * batch_size);
-  TileResult result{x, y, {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]}, 0, 0, 0, 0};
-  TileRun run;
-  for (std::uint32_t r = 0; r < replicates; ++r) {
-    options.seed = hash_combine(0x9170fu, r);
-    for (std::uint32_t s = 0; s < samples; ++s) {
-      pilot.render_job(options, job_of(tile, options.seed, s), result);
-      for (std::size_t i = 0; i < tile_pixels; ++i) {
-        const Vec3d sample(result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]);
-        if (is_finite(sample)) run.sample[r][s][i] = sample;
-      }
-    }
+  options.seed = hash_combine(0x9170fu, replicate);
+  const Group places = in_moved_grid(group, options.seed, sample);
+  TileJob job{};
+  job.tiles = max_tiles;
+  job.sample = sample;
+  job.places = places.data();
+  std::vector<std::uint32_t> place(2 * batch_size);
+  std::vector<float> values(6 * batch_size);
+  const auto part = [&](std::size_t c) { return &values[c * batch_size]; };
+  TileResult result{&place[0], &place[batch_size],         {part(0), part(1), part(2)}, 0, 0, 0,
+                    0,         {part(3), part(4), part(5)}};
+  pilot.render_job(options, job, result);
+  for (std::size_t i = 0; i < batch_size; ++i) {
+    Vec3d radiance;
+    for (int c = 0; c < 3; ++c) radiance[c] = double{result.radiance[c][i]} - double{result.emitted[c][i]};
+    if (is_finite(radiance)) run.tiles[i / tile_pixels].sample[replicate][sample][i % tile_pixels] = radiance;
   }
-  run.cost = cost_of(result, pilot.list ? over_list : over_tree);
-  return run;
+  run.cost[replicate][sample] = cost_of(result, pilot.list ? over_list : over_tree);
 }
 
-void subtract(TileRun& from, const TileRun& seen) {
-  for (std::size_t r = 0; r < replicates; ++r)
-    for (std::size_t s = 0; s < samples; ++s)
-      for (std::size_t i = 0; i < tile_pixels; ++i)
-        from.sample[r][s][i] = from.sample[r][s][i] - seen.sample[r][s][i];
+/// By technique.
+std::vector<GroupRun> render_group(const Pilot& pilot, const std::vector<KernelOptions>& techniques,
+                                   const Group& group) {
+  constexpr std::size_t jobs = replicates * samples;
+  std::vector<GroupRun> runs(techniques.size());
+#pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
+  for (std::size_t i = 0; i < techniques.size() * jobs; ++i)
+    render_sample(pilot, techniques[i / jobs], group, static_cast<std::uint32_t>(i % jobs / samples),
+                  static_cast<std::uint32_t>(i % samples), runs[i / jobs]);
+  return runs;
+}
+
+/// Of a sample of a pixel.
+double mean_cost(const GroupRun& run) {
+  double sum = 0;
+  for (const auto& replicate : run.cost)
+    for (const double cost : replicate) sum += cost;
+  return sum / double(replicates * samples * batch_size);
 }
 
 Vec3d mean_of_tile(const TileRun& run) {
@@ -142,31 +161,23 @@ double difference_error(const TileRun& run, const Vec3d& brightness) {
 }
 
 /// Errors are relative to what the techniques make of the tile on average.
-std::vector<TechniqueFigures> try_tile(const Pilot& pilot, const std::vector<KernelOptions>& techniques,
-                                       const Tile& tile) {
-  KernelOptions emission = techniques[0];
-  emission.suffixes = 0;
-  emission.max_depth = 1;
-  const TileRun seen = render_tile(pilot, emission, tile);
-  std::vector<TileRun> runs;
+std::vector<TechniqueFigures> figures_of(const std::vector<GroupRun>& runs, std::size_t tile) {
   Vec3d brightness;
-  for (const KernelOptions& technique : techniques) {
-    runs.push_back(render_tile(pilot, technique, tile));
-    subtract(runs.back(), seen);
-    brightness += mean_of_tile(runs.back()) / double(techniques.size());
-  }
+  for (const GroupRun& run : runs) brightness += mean_of_tile(run.tiles[tile]) / double(runs.size());
   std::vector<TechniqueFigures> figures;
-  for (const TileRun& run : runs) {
+  for (const GroupRun& group : runs) {
+    const TileRun& run = group.tiles[tile];
     const double error = relative_error(run, samples, brightness);
     figures.push_back({mean_of_tile(run), error, relative_error(run, 1, brightness),
-                       error > 0 ? difference_error(run, brightness) / error : 0,
-                       run.cost / double(replicates * samples * tile_pixels)});
+                       error > 0 ? difference_error(run, brightness) / error : 0, mean_cost(group)});
   }
   return figures;
 }
 
+using FiguresByTile = std::vector<std::vector<TechniqueFigures>>;
+
 /// Of technique k; see TechniqueFigures.
-double own_share(const std::vector<std::vector<TechniqueFigures>>& by_tile, std::size_t k) {
+double own_share(const FiguresByTile& by_tile, std::size_t k) {
   double error = 0, own = 0, worst = 0;
   for (const auto& tile : by_tile) {
     error += tile[k].error;
@@ -176,26 +187,26 @@ double own_share(const std::vector<std::vector<TechniqueFigures>>& by_tile, std:
   return error > 0 ? (own + worst) / (error + worst) : 1;
 }
 
-/// Of each technique the tile with the greatest error: a single bright sample that any of them might have met
-/// would decide alone.
-void leave_out_worst(std::vector<std::vector<TechniqueFigures>>& by_tile) {
-  for (std::size_t k = 0, count = by_tile.front().size(); k < count; ++k)
-    by_tile.erase(std::max_element(by_tile.begin(), by_tile.end(),
-                                   [k](const auto& a, const auto& b) { return a[k].error < b[k].error; }));
+/// Lowers each technique's errors of an eighth of the tiles, the worst ones, to that of the next: few bright
+/// samples, that any technique might have met, would decide alone.
+void lower_greatest(FiguresByTile& by_tile) {
+  constexpr std::size_t part = 8;
+  const std::size_t lowered = (by_tile.size() + part - 1) / part;
+  for (std::size_t k = 0, count = by_tile.front().size(); k < count; ++k) {
+    const auto next = by_tile.begin() + static_cast<std::ptrdiff_t>(lowered);
+    std::nth_element(by_tile.begin(), next, by_tile.end(),
+                     [k](const auto& a, const auto& b) { return a[k].error > b[k].error; });
+    for (auto tile = by_tile.begin(); tile != next; ++tile) {
+      (*tile)[k].error = (*next)[k].error;
+      (*tile)[k].single_error = std::min((*tile)[k].single_error, (*next)[k].single_error);
+    }
+  }
 }
 
-}  // namespace
-
-std::vector<TechniqueFigures> try_techniques(const Pilot& pilot,
-                                             const std::vector<KernelOptions>& techniques) {
-  const std::vector<Tile> tiles = spread_tiles(pilot);
-  if (tiles.empty()) return {};
-  std::vector<std::vector<TechniqueFigures>> by_tile(tiles.size());
-#pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
-  for (std::size_t i = 0; i < tiles.size(); ++i) by_tile[i] = try_tile(pilot, techniques, tiles[i]);
-  std::vector<TechniqueFigures> means(techniques.size());
+std::vector<TechniqueFigures> means_over(FiguresByTile by_tile) {
+  std::vector<TechniqueFigures> means(by_tile.front().size());
   for (std::size_t k = 0; k < means.size(); ++k) means[k].own_share = own_share(by_tile, k);
-  leave_out_worst(by_tile);
+  lower_greatest(by_tile);
   const double share = 1.0 / static_cast<double>(by_tile.size());
   for (const std::vector<TechniqueFigures>& tile : by_tile)  // in their order, whatever the threads
     for (std::size_t k = 0; k < means.size(); ++k) {
@@ -205,6 +216,29 @@ std::vector<TechniqueFigures> try_techniques(const Pilot& pilot,
       means[k].cost += tile[k].cost * share;
     }
   return means;
+}
+
+}  // namespace
+
+TileTrials::TileTrials(Pilot pilot, std::vector<KernelOptions> techniques)
+    : pilot_(std::move(pilot)), techniques_(std::move(techniques)) {}
+
+bool TileTrials::try_more() {
+  const int spare = tiles_along(pilot_.width) * tiles_along(pilot_.height) / sparseness;
+  if (tiles() + max_tiles > static_cast<std::size_t>(std::min(most_tiles, spare))) return false;
+  Group group;
+  for (std::size_t i = 0; i < group.size(); ++i) group[i] = tile_at(pilot_, tiles() + i);
+  const std::vector<GroupRun> runs = render_group(pilot_, techniques_, group);
+  for (std::size_t i = 0; i < group.size(); ++i) by_tile_.push_back(figures_of(runs, i));
+  return true;
+}
+
+std::vector<TechniqueFigures> TileTrials::figures() const { return means_over(by_tile_); }
+
+std::vector<TechniqueFigures> TileTrials::figures_without(std::size_t tile) const {
+  FiguresByTile others = by_tile_;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(tile));
+  return means_over(std::move(others));
 }
 
 }  // namespace castray

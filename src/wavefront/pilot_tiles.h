@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -32,9 +33,31 @@ struct TechniqueFigures {
   double cost = 0;  ///< of a sample, in rays, of which what pixels gather is a fraction
 };
 
-/// Tries techniques on the same tiles. What the camera sees of emitters is noise of all alike, and left out.
-/// Nothing depends on the seed of the options, or on threads. Empty if the image is too small to spare tiles.
-std::vector<TechniqueFigures> try_techniques(const Pilot& pilot,
-                                             const std::vector<KernelOptions>& techniques);
+/// Of pixels, by each technique in a group of tiles.
+inline constexpr int group_samples = 8 * batch_size;
+
+/// Tries techniques on the same tiles, group after group of them, each spread over the image. What the camera
+/// sees of emitters is noise of all alike, and left out. Nothing depends on the seed of the options, or on
+/// threads.
+class TileTrials {
+ public:
+  TileTrials(Pilot pilot, std::vector<KernelOptions> techniques);
+
+  /// Tries one more group. False, and nothing done, if the image is too small to spare more tiles.
+  bool try_more();
+
+  std::size_t tiles() const { return by_tile_.size(); }
+
+  /// Of each technique, over the tiles tried until now.
+  std::vector<TechniqueFigures> figures() const;
+
+  /// The same, had this tile not been among them.
+  std::vector<TechniqueFigures> figures_without(std::size_t tile) const;
+
+ private:
+  Pilot pilot_;
+  std::vector<KernelOptions> techniques_;
+  std::vector<std::vector<TechniqueFigures>> by_tile_;
+};
 
 }  // namespace castray

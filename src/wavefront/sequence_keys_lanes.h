@@ -15,9 +15,15 @@ CASTRAY_INLINE Uint with_epoch(Uint key, uint64_t sample) {
 
 CASTRAY_INLINE uint32_t hash_once(uint32_t a, uint32_t b) { return lane(hash_combine(Uint(a), Uint(b)), 0); }
 
+CASTRAY_INLINE TilePlace place_of(const TileJob& job, int tile) {
+  if (job.places) return job.places[tile];
+  return {job.x + tile * tile_size, job.y, job.grid_x + tile, job.grid_y};
+}
+
 CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
-  const uint32_t key = hash_once(
-      hash_once(hash_once(c.options.seed, 0x7411u), (uint32_t)(c.job.grid_x + tile)), (uint32_t)c.job.grid_y);
+  const TilePlace place = place_of(c.job, tile);
+  const uint32_t key = hash_once(hash_once(hash_once(c.options.seed, 0x7411u), (uint32_t)place.grid_x),
+                                 (uint32_t)place.grid_y);
   return lane(with_epoch(Uint(key), c.job.sample), 0);
 }
 

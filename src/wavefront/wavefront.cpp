@@ -433,7 +433,7 @@ class Wavefront final : public PreparedIntegrator {
       choose_reconstruction(plan_,
                             by_lights ? gains.reconstruction_by_lights : gains.reconstruction_by_chance);
     const std::optional<double>& sharing = by_lights ? gains.sharing_by_lights : gains.sharing_by_chance;
-    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing);
+    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing, gains.sharing_error);
   }
 
   const BvhStats& tree_stats() const { return data_.bvh ? data_.bvh->stats() : data_.instances->stats(); }
