@@ -97,6 +97,12 @@ void keep_known(PixelCouplings& weights, const DifferenceSums& sums, int half, i
   }
 }
 
+/// Whether a half has two samples of any pixel. Of one sample, differences are those of the means.
+bool may_need_corrections(const DifferenceSums& sums) {
+  const std::vector<std::uint32_t>& counts = sums.all_counts();
+  return std::any_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count > 1; });
+}
+
 }  // namespace
 
 PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weights, int threads) {
@@ -113,7 +119,7 @@ PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weight
 Image image_of(const Film& film, int threads) {
   Image image = film.image();
   const DifferenceSums& sums = film.differences();
-  if (!sums.kept()) return image;
+  if (!sums.kept() || !may_need_corrections(sums)) return image;
   if (threads <= 0) threads = available_threads();
   const Window& window = film.window();
   const PixelPlanes both[] = {corrections(sums, 0, 1, threads), corrections(sums, 1, 0, threads)};

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "castray/film.h"
@@ -156,6 +157,9 @@ TEST_CASE("with one sample a half, or where all is black, the image is the mean"
   for (const std::uint32_t samples : {1u, 2u}) {
     const TiledFilm film = noisy_film(2, samples);
     CHECK(image_of(film).pixels == film.image().pixels);
+    for (int half = 0; half < 2; ++half)
+      for (const PixelPlane& plane : corrections(film.differences(), half, 1 - half, 1))
+        CHECK(std::all_of(plane.values.begin(), plane.values.end(), [](float v) { return v == 0; }));
   }
   TiledFilm black(window);
   for (std::uint32_t s = 0; s < 8; ++s) black.add_sample(s, [](int, int) { return Vec3f(); });
