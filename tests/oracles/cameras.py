@@ -40,7 +40,7 @@ def mitsuba_scene(name):
         view = view.scale([250, 250, 1])
     film = {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}}
     scene = {"type": "scene", "integrator": {"type": "path", "max_depth": -1},
-             "sensor": {**sensor, "to_world": view, "film": film, "sampler": {"type": "independent"}}}
+             "sensor": {**sensor, "to_world": view, "film": film, "sampler": {"type": details.SAMPLER}}}
     for i, mesh in enumerate(BOX["meshes"]):
         material = BOX["materials"][mesh["material"]]
         shape = {"type": "obj", "filename": str(ROOT / "scenes" / mesh["obj"]), "face_normals": True,

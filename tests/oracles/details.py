@@ -19,6 +19,7 @@ from PIL import Image
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "tests" / "golden" / "details"
 SIDE, BLOCK = 64, 4  # pixels
+SAMPLER = "independent"
 FALSE_ALARM = 1e-3  # of a whole run
 SKY, LAMP = [0.3, 0.35, 0.4], [4.0, 3.5, 3.0]
 ABSORPTION = [0.2, 0.6, 1.0]  # of the glass, which is a block instead of a card
@@ -192,7 +193,7 @@ def mitsuba_scene(name):
         "sensor": {"type": "perspective", "fov": 35, "fov_axis": "y",
                    "to_world": t().look_at(origin=[0, 1.5, 4.5], target=[0, 0.8, 0], up=[0, 1, 0]),
                    "film": {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}},
-                   "sampler": {"type": "independent"}},
+                   "sampler": {"type": SAMPLER}},
         "sky": {"type": "constant", "radiance": rgb(SKY)},
         **card(),
         "floor": shape(plain(floor(name)), t().rotate([1, 0, 0], -90).scale(3)),
