@@ -122,15 +122,17 @@ Products products_of(const Ways& ways, const Ways& rest, double of_plain, double
 /// added.
 ///
 /// Of what neighbours have alike 0.3 is left, as in scenes of many kinds. Rare bright samples that no tile
-/// has met are a pixel's own; so where more than 0.57 of the error is known to be, no gain is counted on.
-/// Time is that at 4 samples, where it counts most, in rays: of sums for each sample, and of edges and
-/// equations once for each pixel.
+/// has met are a pixel's own; so the more of the error is known to be, from half of it on, the less is
+/// counted on, and nothing from 0.65 on. Time is that at 4 samples, where it counts most, in rays: of sums
+/// for each sample, and of edges and equations once for each pixel.
 double gain_of_reconstruction(const TechniqueFigures& shared, double own_error, double rays, bool list) {
-  constexpr double left = 0.3, most_own = 0.57, few_samples = 4;
+  constexpr double least_left = 0.3, half = 0.5, most_own = 0.65, few_samples = 4;
   const double unit = list ? 1 : 0.25, sums = 1 * unit, equations = 13 * unit;
   if (!(shared.error + own_error > 0)) return 0;
   const double own = (shared.own_share * shared.error + own_error) / (shared.error + own_error);
-  const double error = own > most_own ? 1 : own + left * (1 - own), cost = shared.cost + rays;
+  const double doubt = std::clamp((own - half) / (most_own - half), 0.0, 1.0);
+  const double left = least_left + (1 - least_left) * doubt;
+  const double error = std::min(own, 1.0) * (1 - left) + left, cost = shared.cost + rays;
   return cost / (cost + sums + equations / few_samples) / error;
 }
 
@@ -202,12 +204,12 @@ LogGains log_gains(const Question& q, const std::vector<TechniqueFigures>& figur
 }
 
 /// The standard error of each logarithm of `gains`, by the jackknife over tiles. Of noise that few tiles have
-/// met it tells nothing, so a factor of 1.6 in each tile is added, but for reconstruction, which counts one
-/// more noisy tile itself.
+/// met it tells nothing, so a factor of 1.6 in each tile is added; its square for reconstruction, which
+/// hardly helps against such noise.
 LogErrors errors_of(const Question& q, const TileTrials& trials, const LogGains& gains) {
   constexpr double unseen = 0.25;  // squared log of that factor
   const double n = static_cast<double>(trials.tiles());
-  LogErrors variance{unseen / n, unseen / n, 0};
+  LogErrors variance{unseen / n, unseen / n, 4 * unseen / n};
   for (std::size_t tile = 0; tile < trials.tiles(); ++tile) {
     const LogGains without = log_gains(q, trials.figures_without(tile));
     for (std::size_t k = 0; k < gains.size(); ++k) {

@@ -178,13 +178,12 @@ using FiguresByTile = std::vector<std::vector<TechniqueFigures>>;
 
 /// Of technique k; see TechniqueFigures.
 double own_share(const FiguresByTile& by_tile, std::size_t k) {
-  double error = 0, own = 0, worst = 0;
+  double error = 0, own = 0;
   for (const auto& tile : by_tile) {
     error += tile[k].error;
     own += tile[k].error * tile[k].own_share;
-    worst = std::max(worst, tile[k].error);
   }
-  return error > 0 ? (own + worst) / (error + worst) : 1;
+  return error > 0 ? own / error : 1;
 }
 
 /// Lowers each technique's errors of an eighth of the tiles, the worst ones, to that of the next: few bright
@@ -205,8 +204,8 @@ void lower_greatest(FiguresByTile& by_tile) {
 
 std::vector<TechniqueFigures> means_over(FiguresByTile by_tile) {
   std::vector<TechniqueFigures> means(by_tile.front().size());
-  for (std::size_t k = 0; k < means.size(); ++k) means[k].own_share = own_share(by_tile, k);
   lower_greatest(by_tile);
+  for (std::size_t k = 0; k < means.size(); ++k) means[k].own_share = own_share(by_tile, k);
   const double share = 1.0 / static_cast<double>(by_tile.size());
   for (const std::vector<TechniqueFigures>& tile : by_tile)  // in their order, whatever the threads
     for (std::size_t k = 0; k < means.size(); ++k) {

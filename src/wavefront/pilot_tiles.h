@@ -27,8 +27,7 @@ struct TechniqueFigures {
   double error = 0;         ///< of means over some samples
   double single_error = 0;  ///< of single samples
   /// The share of `error` that neighbours do not have alike: that of half of the variance of their
-  /// differences. One more tile counts that is as noisy as the worst, and has nothing alike: so near 1 where
-  /// few tiles hold most of the noise, and others may hold more.
+  /// differences.
   double own_share = 1;
   double cost = 0;  ///< of a sample, in rays, of which what pixels gather is a fraction
 };

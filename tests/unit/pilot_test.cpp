@@ -287,11 +287,11 @@ TEST_CASE("the pilot does not depend on threads or seed, and small or dark image
 namespace {
 
 /// Pixels of 1 and noise, of which `alike` is the same for all of a tile and the rest each pixel's own. In
-/// an eighth of the image, in the middle, all is their own, and so many times as large.
-RenderJob partly_alike(float alike, float in_the_middle, std::uint64_t rays_of_pixel) {
+/// an eighth of the image, in the middle, down to row `rows`, all is their own, and so many times as large.
+RenderJob partly_alike(float alike, float in_the_middle, std::uint64_t rays_of_pixel, int rows = 512) {
   return [=](const KernelOptions& options, const TileJob& job, TileResult& result) {
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(job.tiles); ++k) {
-      const bool middle = in_the_middle > 0 && x_of(job, k) / 64 == 4;
+      const bool middle = in_the_middle > 0 && x_of(job, k) / 64 == 4 && job.places[k].y < rows;
       const float shared = middle ? 0 : 0.1f * alike, own = middle ? 0.1f * in_the_middle : 0.1f - shared;
       for (std::uint32_t i = 0; i < tile_pixels; ++i)
         for (std::uint32_t c = 0; c < 3; ++c)
@@ -320,6 +320,7 @@ TEST_CASE("to the pilot, differences do not pay where samples cost little, or fe
   CHECK(gain_of_reconstruction(partly_alike(0.95f, 0, 1)) < 1);
   CHECK(gain_of_reconstruction(partly_alike(0.95f, 0, 1), false) > 1);  // rays over a tree cost more
   CHECK(gain_of_reconstruction(partly_alike(0.95f, 10, 20)) < 1);
+  CHECK(gain_of_reconstruction(partly_alike(0.95f, 10, 20, 128)) > 1.2);  // 1/32 of all do not decide
 }
 
 TEST_CASE("whether an image is reconstructed is chosen alike for all parts of it, and never for few tiles") {
