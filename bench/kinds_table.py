@@ -36,16 +36,16 @@ def markdown(rows, names):
 
 def plot(rows, names):
     """A logarithmic dot plot: how many times more efficient castray is than each contender."""
-    top, left, step, decades, width = 40, 190, 20, 4, 560  # 0.1 to 1000
+    top, left, step, decades, width = 40, 190, 20, 5, 600  # 0.1 to 10 000
     colours = ["#5b6770", "#c8553d", "#2a7f9e", "#7a5195"]
 
     def x(ratio):
-        return left + width * (math.log10(min(max(ratio, 0.1), 1000)) + 1) / decades
+        return left + width * (math.log10(min(max(ratio, 0.1), 1e4)) + 1) / decades
 
     height = top + step * len(rows) + 30
     parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {left + width + 30} {height}" '
              'font-family="sans-serif" font-size="12">', '<rect width="100%" height="100%" fill="#fff"/>']
-    for power in range(-1, 4):
+    for power in range(-1, 5):
         place = x(10.0**power)
         parts.append(f'<line x1="{place}" y1="{top - 6}" x2="{place}" y2="{height - 24}" '
                      f'stroke="{"#444" if power == 0 else "#ddd"}"/>')

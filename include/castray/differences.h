@@ -65,8 +65,10 @@ class DifferenceSums {
   /// Adds `count` pixels of another, from (other_x,other_y) on, to those from (x,y) on.
   void add_row(int x, int y, const DifferenceSums& other, int other_x, int other_y, int count);
 
-  /// Radiance is this times the sum.
-  double radiance_unit() const { return scale_ * 0x1p-36; }
+  /// Radiance is this times the sum; and the same over the film's scale.
+  double radiance_unit() const { return scale_ * unit_over_scale; }
+  static constexpr double unit_over_scale = 0x1p-36;
+  double scale() const { return scale_; }
 
   /// As they are in files: by half, row, term, channel, column; and counts likewise.
   std::vector<std::int64_t>& all_sums() { return sums_; }

@@ -26,13 +26,13 @@ constexpr float stiffest = 16384;
 
 float square(float x) { return x * x; }
 
-/// The luminance of the mean of a term, 0 without samples, of row y.
+/// The luminance of the mean of a term, over the film's scale, 0 without samples, of row y.
 CASTRAY_VECTOR_CLONES
 void read_luminance(const DifferenceSums& sums, int half, int y, Term term, float* out) {
   const std::int64_t *red = sums.sums(half, y, term, 0), *green = sums.sums(half, y, term, 1),
                      *blue = sums.sums(half, y, term, 2);
   const std::uint32_t* count = sums.counts(half, y, term);
-  const Vec3d unit(sums.radiance_unit());
+  const Vec3d unit(DifferenceSums::unit_over_scale);
   for (int x = 0; x < sums.width(); ++x) {
     const Vec3d sum{static_cast<double>(red[x]), static_cast<double>(green[x]), static_cast<double>(blue[x])};
     out[x] = count[x] > 0 ? static_cast<float>(luminance(sum * unit) / count[x]) : 0;
@@ -53,7 +53,6 @@ class Weights {
         threads_(threads),
         w_(sums.width()),
         h_(sums.height()),
-        least_(square(least_of_scale * static_cast<float>(sums.radiance_unit() * 0x1p36))),
         own_(w_, h_),
         right_(w_, h_),
         below_(w_, h_),
@@ -149,8 +148,8 @@ class Weights {
       const float luminance2 = square(luminance / std::max(pixels, 1.f));
       const float contradiction = contradictions / std::max(pairs, 1.f);
       blocks_[static_cast<std::size_t>(y0 / block * block_columns_ + column)] = {
-          luminance2,
-          std::max(means_per_contradiction * contradiction, square(least_of_mean) * luminance2 + least_)};
+          luminance2, std::max(means_per_contradiction * contradiction,
+                               square(least_of_mean) * luminance2 + square(least_of_scale))};
     }
   }
 
@@ -172,7 +171,7 @@ class Weights {
       const float among = std::max(mean_square - mean * mean, 0.f) * n / (n - 1),
                   own = square(difference[x] - mean);
       const float doubtful = doubt * std::max(mean_square, square(difference[x])) +
-                             square(least_of_difference) * block_at(x, y).luminance2 + least_;
+                             square(least_of_difference) * block_at(x, y).luminance2 + square(least_of_scale);
       const float variance = std::max(among, own) + doubtful / static_cast<float>(count[x]);
       weight[x] = std::min(1 / variance, stiffest * screen[x]);
     }
@@ -180,7 +179,6 @@ class Weights {
 
   const DifferenceSums& sums_;
   int half_, threads_, w_, h_;
-  float least_;
   PixelPlane own_, right_, below_;  ///< luminances of means
   int block_columns_;
   std::vector<Block> blocks_;

@@ -123,7 +123,7 @@ Image image_of(const Film& film, int threads) {
   if (threads <= 0) threads = available_threads();
   const Window& window = film.window();
   const PixelPlanes both[] = {corrections(sums, 0, 1, threads), corrections(sums, 1, 0, threads)};
-  const auto share = static_cast<float>(share_of_corrections(sums, both, threads));
+  const auto share = static_cast<float>(share_of_corrections(sums, both, threads) * sums.scale());
   for (int half = 0; half < DifferenceSums::halves; ++half) {
     const PixelPlanes& correction = both[half];
 #pragma omp parallel for schedule(static) num_threads(threads)

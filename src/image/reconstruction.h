@@ -5,7 +5,7 @@
 
 namespace castray {
 
-/// What to add to the means of one half of the samples, from its own differences and with weights of the
+/// What to add to the means of one half of the samples, over the film's scale, from its own differences and with weights of the
 /// other half. Weights of its own would make the image darker.
 ///
 /// Gradient-domain path reusing (Bauszat, Petitjean, Eisemann 2017), a control variate in image space

@@ -8,7 +8,7 @@ CASTRAY_VECTOR_CLONES
 void RowMeans::read(const DifferenceSums& sums, int half, int y, DifferenceSums::Term term) {
   const std::size_t width = per_sum.size();
   const std::uint32_t* count = sums.counts(half, y, term);
-  const double unit = sums.radiance_unit();
+  const double unit = DifferenceSums::unit_over_scale;
   double* factor = per_sum.data();
   for (std::size_t x = 0; x < width; ++x) factor[x] = count[x] > 0 ? unit / count[x] : 0;
   for (int c = 0; c < 3; ++c) {

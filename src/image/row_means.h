@@ -8,7 +8,8 @@
 
 namespace castray {
 
-/// The means of a row's pixels, or differences, in three channels.
+/// The means of a row's pixels, or differences, in three channels, over the film's scale: reconstruction
+/// squares them, which in other units might leave the range of floats.
 struct RowMeans {
   std::vector<double> channel[3];
   std::vector<double> per_sum;  ///< the unit over the count, 0 without samples

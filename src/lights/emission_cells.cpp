@@ -44,7 +44,7 @@ EmissionCells::EmissionCells(const Scene& scene) : scene_(&scene), means_(mean_e
   if (varied == 0) return;
   steps_ = root(most_cells / varied, most_steps);
   const int looks = root(most_looks / (varied * steps_ * steps_), most_looks_along);
-  first_.assign(scene.own_triangles(), no_cells);
+  first_.assign(scene.triangles.size(), no_cells);  // those of instances are hit, too
   for (const std::uint32_t triangle : scene.lights)
     if (is_varied(triangle)) add(scene, triangle, looks);
 }

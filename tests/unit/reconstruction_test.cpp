@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "castray/film.h"
+#include "castray/render.h"
 #include "core/sequences.h"
 #include "image/screened_poisson.h"
 #include "small_tiles.h"
 #include "statistics.h"
+#include "test_scenes.h"
 
 using namespace castray;
 using namespace castray::test;
@@ -164,6 +166,26 @@ TEST_CASE("with one sample a half, or where all is black, the image is the mean"
   TiledFilm black(window);
   for (std::uint32_t s = 0; s < 8; ++s) black.add_sample(s, [](int, int) { return Vec3f(); });
   for (const Vec3f& p : image_of(black).pixels) REQUIRE(p == Vec3f());
+}
+
+TEST_CASE("reconstructed images are the same in any unit of radiance") {
+  RenderOptions options;
+  options.width = options.height = 72;
+  options.spp = 4;
+  options.reconstruct = Switch::on;
+  const auto rendered = [&](float unit) {
+    Scene scene = standard_scene("cornell_box");
+    for (Material& m : scene.materials) m.ke *= double{unit};
+    return image_of(render(scene, options).film);
+  };
+  const Image image = rendered(1);
+  for (const float unit : {0x1p-70f, 0x1p-40f, 0x1p30f, 0x1p90f}) {
+    CAPTURE(unit);
+    const Image other = rendered(unit);
+    bool same = true;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) same &= other.pixels[i] == image.pixels[i] * unit;
+    CHECK(same);
+  }
 }
 
 TEST_CASE("reconstruction has no bias, which it has with weights of the same samples") {
