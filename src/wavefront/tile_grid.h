@@ -10,6 +10,8 @@
 
 namespace castray {
 
+static_assert(tile_size == tile_side && ragged_reach == tile_reach);  // films take the tiles of kernels
+
 /// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
 /// sample, so that no tile's edge stays in one place.
 struct TileGrid {
