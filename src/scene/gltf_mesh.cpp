@@ -33,13 +33,7 @@ class PrimitiveReader {
     read_attributes();
     add_triangles(mode, read_order());
     if (!mesh_.colors.empty()) mesh_.triangle_colors = mesh_.triangles;
-    if (turned_ > 0)
-      warnings_.add(
-          document_.place(meshes, number_),
-          fmt::format("{}[{}]: a triangle's three normals oppose the order of its corners, which is "
-                      "turned round",
-                      meshes, number_),
-          Harm::changes_picture, turned_);
+    faces_.warn(warnings_, fmt::format("{}[{}]: ", meshes, number_));
     return std::move(mesh_);
   }
 
@@ -133,7 +127,7 @@ class PrimitiveReader {
 
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const Corner corners[] = {corner(a), corner(b), corner(c)};
-    turned_ += faces_.add(corners, 0);
+    faces_.add(corners, 0);
   }
 
   Corner corner(std::uint32_t i) const {
@@ -146,8 +140,7 @@ class PrimitiveReader {
   std::size_t number_;
   WarningList& warnings_;
   Mesh mesh_;
-  MeshFaces faces_{mesh_};
-  std::size_t turned_ = 0;
+  MeshFaces faces_{mesh_, [this] { return document_.place(meshes, number_); }};
 };
 
 }  // namespace

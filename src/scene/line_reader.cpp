@@ -39,13 +39,15 @@ LineReader::LineReader(std::string_view text, const std::string& file)
   if (is_utf16(text)) throw InputError(SourcePlace{file}, "is UTF-16; save it as UTF-8");
 }
 
-void LineReader::fail(const std::string& what) const {
+SourcePlace LineReader::word_place() const {
   SourcePlace where = place();
   if (line_begin_)
     for (const char* c = line_begin_; c <= word_begin_; ++c)
       where.column += c == word_begin_ || (static_cast<unsigned char>(*c) & 0xc0) != 0x80;  // characters
-  throw InputError(where, what);
+  return where;
 }
+
+void LineReader::fail(const std::string& what) const { throw InputError(word_place(), what); }
 
 /// Takes the first line off the text, its end included. A text of CRs alone is looked through for LF once.
 std::string_view LineReader::take_line() {

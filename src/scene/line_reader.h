@@ -39,6 +39,8 @@ class LineReader {
 
   /// The line, without a column.
   SourcePlace place() const { return {file_, line_number_, 0}; }
+  /// Of the word that was read last.
+  SourcePlace word_place() const;
   /// Throws InputError at the word that was read last.
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -47,7 +49,7 @@ class LineReader {
   void join_continued_lines();
 
   std::string_view text_;
-  const char* line_feed_ = nullptr;  ///< the next one in text_, or its end; null: not looked for yet
+  const char* line_feed_ = nullptr;   ///< the next one in text_, or its end; null: not looked for yet
   std::string_view line_;             ///< what is left of the line
   const char* line_begin_ = nullptr;  ///< of the whole line; null where it is continued
   const char* word_begin_ = nullptr;  ///< of the word that was read last

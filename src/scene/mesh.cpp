@@ -1,8 +1,18 @@
 #include "scene/mesh.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace castray {
 
 namespace {
+
+/// The same direction, of a length near 1: a power of two is taken out, which rounds nothing.
+Vec3d scaled_to_unit(const Vec3d& v) {
+  const double most = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  const int exponent = most > 0 ? std::ilogb(most) : 0;
+  return {std::ldexp(v.x, -exponent), std::ldexp(v.y, -exponent), std::ldexp(v.z, -exponent)};
+}
 
 template <class T>
 void append_values(std::vector<T>& all, const std::vector<T>& more) {
@@ -23,6 +33,19 @@ void append_indices(std::vector<Index3>& all, std::size_t triangles, const std::
 }
 
 }  // namespace
+
+bool is_in_reach(const Vec3d& p) {
+  return std::abs(p.x) <= farthest_coordinate && std::abs(p.y) <= farthest_coordinate &&
+         std::abs(p.z) <= farthest_coordinate;
+}
+
+std::optional<TriangleFault> fault_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  if (!is_in_reach(a) || !is_in_reach(b) || !is_in_reach(c)) return TriangleFault::not_finite;
+  // Products of tiny edges may vanish though there is an area.
+  const bool flat =
+      cross(b - a, c - a) == Vec3d{} && cross(scaled_to_unit(b - a), scaled_to_unit(c - a)) == Vec3d{};
+  return flat ? std::optional(TriangleFault::no_area) : std::nullopt;
+}
 
 void append(Mesh& all, Mesh&& more) {
   if (all.triangles.empty()) {

@@ -2,12 +2,26 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "castray/scene.h"
 #include "castray/vec.h"
 
 namespace castray {
+
+/// Why a triangle can not be rendered.
+enum class TriangleFault : std::uint8_t { not_finite, no_area };
+inline constexpr std::size_t triangle_faults = 2;
+
+/// Coordinates beyond this, of either sign, count as infinite: below it, products of three are finite.
+inline constexpr double farthest_coordinate = 1e100;
+
+/// Whether no coordinate is beyond `farthest_coordinate` or nan.
+bool is_in_reach(const Vec3d& p);
+
+/// The fault of the triangle of these corners: one of them is out of reach, or all lie on a line.
+std::optional<TriangleFault> fault_of(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
 /// Triangles as the input gives them, in double, before the scene's place and size are known.
 struct Mesh {
@@ -21,6 +35,8 @@ struct Mesh {
   std::vector<Index3> triangle_uvs;     ///< empty, or per triangle; Scene::no_index where it has none
   std::vector<Vec3f> colors;            ///< linear RGB of vertices
   std::vector<Index3> triangle_colors;  ///< empty, or per triangle; Scene::no_index where it has none
+  /// By TriangleFault, where the file has the first triangle of it; without a file where it has none.
+  std::array<SourcePlace, triangle_faults> first_faults;
 };
 
 /// Adds the triangles of `more` behind those of `all`. No index may grow beyond 32 bits.

@@ -19,21 +19,12 @@ namespace castray {
 namespace {
 
 /// What may be odd about a great many lines.
-enum class Oddity : unsigned char {
-  uv_index_0,
-  normal_index_0,
-  no_uvs,
-  no_normals,
-  few_corners,
-  wound_against_normals
-};
+enum class Oddity : unsigned char { uv_index_0, normal_index_0, no_uvs, no_normals };
 constexpr const char* oddities[] = {
     "texture coordinate index 0 is read as none",
     "normal index 0 is read as none",
     "a face names texture coordinates, but there are none before it; it gets none",
     "a face names normals, but there are none before it; it gets none",
-    "a face of fewer than 3 corners is left out",
-    "a triangle's three vn oppose the order of its corners, which is turned round",
 };
 
 class ObjReader {
@@ -49,6 +40,7 @@ class ObjReader {
     finish_colors();
     for (std::size_t i = 0; i < std::size(oddities); ++i)
       if (odd_[i].count > 0) warnings_.add(odd_[i].place, oddities[i], Harm::changes_picture, odd_[i].count);
+    faces_.warn(warnings_);
     return std::move(obj_);
   }
 
@@ -81,10 +73,9 @@ class ObjReader {
     mesh_.objects.push_back({std::string(lines_.rest()), static_cast<std::uint32_t>(mesh_.triangles.size())});
   }
 
-  void note(Oddity oddity, std::uint64_t times = 1) {
+  void note(Oddity oddity) {
     Met& met = odd_[static_cast<std::size_t>(oddity)];
-    if (met.count == 0) met.place = lines_.place();
-    met.count += times;
+    if (met.count++ == 0) met.place = lines_.place();
   }
 
   Vec3d read_vector(std::string_view key) {
@@ -207,14 +198,15 @@ class ObjReader {
 
   void read_face() {
     corners_.clear();
+    lost_corner_.reset();
     for (std::string_view text = lines_.word(); !text.empty(); text = lines_.word()) {
       corners_.push_back(read_corner(text));
+      if (!lost_corner_ && !is_in_reach(mesh_.positions[corners_.back().position]))
+        lost_corner_ = lines_.word_place();
       if (corners_.size() > most_corners)
         lines_.fail(fmt::format("a face of more than {} corners; cut it into smaller ones", most_corners));
     }
-    if (corners_.size() < 3) return note(Oddity::few_corners);
-    if (const std::size_t turned = faces_.add(corners_, current_material()))
-      note(Oddity::wound_against_normals, turned);
+    faces_.add(corners_, corners_.size() < 3 ? std::uint16_t{} : current_material());
   }
 
   void use_material() {
@@ -252,13 +244,14 @@ class ObjReader {
   LineReader lines_;
   ObjFile obj_;
   Mesh& mesh_ = obj_.mesh;
-  MeshFaces faces_{mesh_};
+  MeshFaces faces_{mesh_, [this] { return lost_corner_.value_or(lines_.place()); }};
   bool names_objects_ = false;
   std::uint32_t smoothing_ = 0;  // the group of the faces at hand
   ObjFile::UsedMaterial current_{{}, false, false};
   std::optional<std::uint16_t> current_index_;
   std::unordered_map<std::string, std::size_t> material_indices_;
-  std::vector<Corner> corners_;  // of the face at hand
+  std::vector<Corner> corners_;             // of the face at hand
+  std::optional<SourcePlace> lost_corner_;  // likewise, the first that is out of reach
 };
 
 }  // namespace

@@ -57,13 +57,7 @@ class PlyReader {
 
   ObjFile read() {
     for (const PlyElement& element : header_.elements) read_element(element);
-    if (few_corners_ > 0)
-      warnings_.add({file_.string()}, "a face of fewer than 3 corners is left out", Harm::changes_picture,
-                    few_corners_);
-    if (turned_ > 0)
-      warnings_.add({file_.string()},
-                    "a triangle's three normals oppose the order of its corners, which is turned round",
-                    Harm::changes_picture, turned_);
+    faces_.warn(warnings_);
     if (header_.texture)
       warnings_.add({file_.string()},
                     "the image of 'comment TextureFile' is not read: give the mesh a material");
@@ -147,7 +141,9 @@ class PlyReader {
       else
         read_value(property, ignored);
     }
-    if (element.name == "face") add_face();
+    if (element.name != "face") return;
+    add_texcoords();
+    faces_.add(corners_, 0);
   }
 
   void read_corners(const PlyProperty& property, bool strips) {
@@ -181,7 +177,7 @@ class PlyReader {
     const bool odd = last % 2 == 1;
     const Corner triangle[] = {corners_[last - 2], corners_[odd ? last : last - 1],
                                corners_[odd ? last - 1 : last]};
-    turned_ += faces_.add(triangle, 0);
+    faces_.add(triangle, 0);
   }
 
   void read_texcoords(const PlyProperty& property) {
@@ -192,17 +188,13 @@ class PlyReader {
         values_.next(property.type);
   }
 
-  void add_face() {
-    if (corners_.size() < 3) {
-      ++few_corners_;
-      return;
+  /// Those of a face's corners.
+  void add_texcoords() {
+    if (texcoords_.size() != 2 * corners_.size()) return;
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      corners_[i].uv = static_cast<std::uint32_t>(mesh_.uvs.size());
+      add_uv(texcoords_[2 * i], texcoords_[2 * i + 1]);
     }
-    if (texcoords_.size() == 2 * corners_.size())
-      for (std::size_t i = 0; i < corners_.size(); ++i) {
-        corners_[i].uv = static_cast<std::uint32_t>(mesh_.uvs.size());
-        add_uv(texcoords_[2 * i], texcoords_[2 * i + 1]);
-      }
-    turned_ += faces_.add(corners_, 0);
   }
 
   PlyHeader header_;
@@ -211,10 +203,9 @@ class PlyReader {
   Values values_;
   ObjFile obj_;
   Mesh& mesh_ = obj_.mesh;
-  MeshFaces faces_{mesh_};
+  MeshFaces faces_{mesh_, [this] { return values_.place(); }};
   bool has_normals_ = false, has_uvs_ = false;
   float unit_of_color_ = 1;
-  std::uint64_t few_corners_ = 0, turned_ = 0;
   std::vector<Corner> corners_;  // of the face or strip at hand
   std::vector<double> texcoords_;
 };

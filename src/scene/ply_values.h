@@ -15,8 +15,8 @@
 #include "scene/names.h"
 #include "scene/ply_header.h"
 
-// The numbers behind the head of a PLY file, one after the other: next() reads one of a type, fail() throws
-// InputError that says where the last one is.
+// The numbers behind the head of a PLY file, one after the other: next() reads one of a type, place() is that
+// of the last one as far as messages tell it, fail() throws InputError that says where the last one is.
 
 namespace castray {
 
@@ -53,6 +53,8 @@ class PlyBinaryValues {
   /// Of a number of this type, at least.
   static std::size_t bytes_of(PlyType type) { return size_of(type); }
   std::size_t bytes_left() const { return text_.size() - at_; }
+
+  SourcePlace place() const { return {file_.string()}; }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(SourcePlace{file_.string()}, fmt::format("at byte {}: {}", last_, what));
@@ -99,9 +101,8 @@ class PlyTextValues {
   static std::size_t bytes_of(PlyType) { return 2; }  // a digit and a space
   std::size_t bytes_left() const { return text_.size() - at_ + 1; }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(SourcePlace{file_.string(), line_}, what);
-  }
+  SourcePlace place() const { return {file_.string(), line_}; }
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(place(), what); }
 
  private:
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }

@@ -184,6 +184,7 @@ void SceneBuilder::add(Mesh&& mesh, const std::filesystem::path& file, std::opti
     if (!without_faces_) without_faces_ = file;
   }
   name_objects(mesh, file.stem().string());
+  drop_degenerate(mesh, file);
   if (object)
     join(objects_[*object], std::move(mesh));
   else
@@ -212,6 +213,7 @@ void SceneBuilder::join(Mesh& all, Mesh&& more) const {
 void SceneBuilder::expand(const Mesh& object, const Transform& transform) {
   Mesh copy = object;
   apply(transform, copy);
+  drop_degenerate(copy, scene.file);
   add_to_scene(std::move(copy));
 }
 
@@ -260,10 +262,36 @@ void SceneBuilder::expand_instances() {
   instances_ = std::move(kept);
 }
 
-void SceneBuilder::keep_triangles(Mesh& mesh, const std::vector<bool>& keep) {
-  const std::size_t before = mesh.triangles.size();
+void SceneBuilder::warn_of_dropped(TriangleFault fault, const SourcePlace& place, std::uint64_t count) {
+  if (count == 0) return;
+  scene.dropped_triangles += count;
+  if (fault == TriangleFault::no_area)
+    warnings.add(place, "a triangle without area is left out", Harm::none, count);
+  else
+    warnings.add(
+        place,
+        fmt::format("a triangle is left out: a corner is nan, infinite or farther than {:g} from the "
+                    "origin",
+                    farthest_coordinate),
+        Harm::changes_picture, count);
+}
+
+void SceneBuilder::drop_degenerate(Mesh& mesh, const std::filesystem::path& file) {
+  std::vector<bool> keep(mesh.triangles.size());
+  std::array<std::uint64_t, triangle_faults> dropped{};
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto fault = fault_of(mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+    keep[t] = !fault;
+    if (fault) ++dropped[static_cast<std::size_t>(*fault)];
+  }
+  for (std::size_t i = 0; i < triangle_faults; ++i) {
+    const SourcePlace& first = mesh.first_faults[i];
+    warn_of_dropped(static_cast<TriangleFault>(i), first.file.empty() ? SourcePlace{file.string()} : first,
+                    dropped[i]);
+  }
   keep_marked(mesh, keep);
-  scene.dropped_triangles += before - mesh.triangles.size();
+  drop_unused(mesh.positions, mesh.triangles);
 }
 
 void SceneBuilder::require_triangles() const {
@@ -275,17 +303,6 @@ void SceneBuilder::require_triangles() const {
                                   : " left: all " + std::to_string(scene.dropped_triangles) +
                                         " are degenerate (no area, or coordinates that are not finite)";
   throw InputError(SourcePlace{scene.file.string()}, "the scene has no triangle" + dropped);
-}
-
-void SceneBuilder::drop_unusable(Mesh& mesh) {
-  std::vector<bool> keep(mesh.triangles.size());
-  for (std::size_t t = 0; t < keep.size(); ++t) {
-    const Vec3d &a = mesh.positions[mesh.triangles[t][0]], &b = mesh.positions[mesh.triangles[t][1]],
-                &c = mesh.positions[mesh.triangles[t][2]];
-    keep[t] = is_finite(a) && is_finite(b) && is_finite(c) && a != b && b != c && c != a;
-  }
-  keep_triangles(mesh, keep);
-  drop_unused(mesh.positions, mesh.triangles);
 }
 
 namespace {
@@ -309,7 +326,13 @@ void SceneBuilder::find_scene_space() {
   std::vector<Box3d> boxes;
   for (const Mesh& object : objects_) boxes.push_back(box_of(object.positions));
   for (const Placed& instance : instances_)
-    for (const Vec3d& corner : boxes[instance.object].corners()) all.add(instance.transform.point(corner));
+    for (const Vec3d& corner : boxes[instance.object].corners()) {
+      all.add(instance.transform.point(corner));
+      if (!is_in_reach(instance.transform.point(corner)))
+        throw InputError(SourcePlace{scene.file.string()},
+                         fmt::format("an instance reaches farther than {:g} from the origin; bring it nearer",
+                                     farthest_coordinate));
+    }
   const Space space = space_around(all);
   scene.center = space.center;
   scene.unit = space.unit;
@@ -399,7 +422,9 @@ void SceneBuilder::drop_flat() {
     mesh = {first, kept(mesh.first, mesh.count)};
     first += mesh.count;
   }
-  keep_triangles(mesh_, keep);
+  warn_of_dropped(TriangleFault::no_area, {scene.file.string()},
+                  static_cast<std::uint64_t>(std::ranges::count(keep, false)));
+  keep_marked(mesh_, keep);
 }
 
 /// The first camera is the scene's.
@@ -417,8 +442,6 @@ Scene SceneBuilder::finish() {
   make_objects_of_materials();
   expand_instances();
   if (instances_.empty()) objects_.clear();
-  drop_unusable(mesh_);
-  for (Mesh& object : objects_) drop_unusable(object);
   std::erase_if(instances_, [&](const Placed& i) { return objects_[i.object].triangles.empty(); });
   require_triangles();
   find_scene_space();

@@ -51,8 +51,8 @@ class SceneBuilder {
   /// Notes a key of a file that means nothing here.
   void ignore(const std::filesystem::path& file, std::string_view key);
 
-  /// Adds the mesh of a file, which may have no faces; with `object`, to that. What has no name in it gets
-  /// the file's; names that another mesh of the scene has are numbered.
+  /// Adds the mesh of a file, which may have no faces, without its degenerate triangles; with `object`, to
+  /// that. What has no name in it gets the file's; names that another mesh of the scene has are numbered.
   void add(Mesh&& mesh, const std::filesystem::path& file, std::optional<std::size_t> object = {});
 
   /// Adds an object, which is where instances place it; returns its index.
@@ -60,8 +60,8 @@ class SceneBuilder {
   /// Adds an instance of an object, all of the given material if there is one.
   void place(std::size_t object, const Transform& transform, std::optional<std::uint16_t> material = {});
 
-  /// Drops degenerate triangles and fills in geometry, center, unit, lights, warnings and the camera. Throws
-  /// InputError where no triangle is left.
+  /// Fills in geometry, center, unit, lights, warnings and the camera, without the triangles that rounding
+  /// makes degenerate. Throws InputError where no triangle is left.
   Scene finish();
 
  private:
@@ -79,14 +79,15 @@ class SceneBuilder {
   void make_objects_of_materials();
   void expand_instances();
   void expand(const Mesh& object, const Transform& transform);
-  void drop_unusable(Mesh& mesh);
+  /// Drops the degenerate triangles of a mesh and warns of them, in `file` where the mesh knows no place.
+  void drop_degenerate(Mesh& mesh, const std::filesystem::path& file);
+  void warn_of_dropped(TriangleFault fault, const SourcePlace& place, std::uint64_t count);
   void find_scene_space();
   void move_to_scene_space();
   void round_positions();
   void warn_of_rounding();
   void warn_of_missing_uvs();
-  void drop_flat();  ///< of those that rounding has made flat, too
-  void keep_triangles(Mesh& mesh, const std::vector<bool>& keep);
+  void drop_flat();  ///< what rounding has made so
   void require_triangles() const;
   void place_cameras();
 

@@ -174,3 +174,17 @@ TEST_CASE(
   CHECK(mesh.render({"-q"}).err.empty());
   CHECK(Mesh(square + "f 1 2 3 4\n").render({"--strict"}).exit_code == 0);
 }
+
+TEST_CASE("triangles with corners that are not finite are told once by render, and are errors when strict") {
+  const std::string lost =
+      "o.obj:6:7: a triangle is left out: a corner is nan, infinite or farther than 1e+100 from the origin";
+  const Mesh mesh(square + "v nan 0 0\nf 1 2 5\nf 1 3 5\nf 1 2 2\nf 1 2 3 4\n");
+  const RunResult lenient = mesh.render({});
+  CHECK(lenient.exit_code == 0);
+  CHECK_THAT(lenient.err,
+             Contains("castray: warning: " + lost + " (2 times)\n") && !Contains("without area"));
+  CHECK_THAT(mesh.render({"-v"}).err, Contains("o.obj:8: a triangle without area is left out\n"));
+  const RunResult strict = mesh.render({"--strict"});
+  CHECK(strict.exit_code == 2);
+  CHECK(strict.err == "castray: error: " + lost + "\n");
+}

@@ -237,7 +237,7 @@ TEST_CASE("a triangle whose vertex normals all oppose it is turned round") {
   CHECK(scene.normals[scene.triangle_normals[0][1]].x > 0);  // the third corner's, now the second
   CHECK(turned.warnings ==
         std::vector<std::string>{
-            "o.obj:7: a triangle's three vn oppose the order of its corners, which is turned round"});
+            "o.obj:7: a triangle's three normals oppose the order of its corners, which is turned round"});
 }
 
 TEST_CASE("vertex colours stand for a Kd that is not given") {
