@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
+
+#include "castray/large_allocator.h"
 
 namespace castray {
 
@@ -59,9 +61,9 @@ class DifferenceSums {
     return &counts_[row(half, y) + place(term)];
   }
 
-  /// Adds tile rows begin <= r < end, as far as they are kept; those of a ragged tile reach further than 0 to
-  /// 7. (x,y): of the tile's first pixel in the window, may lie outside.
-  void add(const TileSamples& tile, int begin, int end, int x, int y);
+  /// Adds rows y0 <= y < y1 of the full image, which lie in the window, of one sample of tiles side by side,
+  /// from left to right, as far as they are kept. (left,top): the window's first pixel in the full image.
+  void add(std::span<const TileSamples> tiles, int y0, int y1, int left, int top);
   /// Adds `count` pixels of another, from (other_x,other_y) on, to those from (x,y) on.
   void add_row(int x, int y, const DifferenceSums& other, int other_x, int other_y, int count);
 
@@ -71,14 +73,13 @@ class DifferenceSums {
   double scale() const { return scale_; }
 
   /// As they are in files: by half, row, term, channel, column; and counts likewise.
-  std::vector<std::int64_t>& all_sums() { return sums_; }
-  const std::vector<std::int64_t>& all_sums() const { return sums_; }
-  std::vector<std::uint32_t>& all_counts() { return counts_; }
-  const std::vector<std::uint32_t>& all_counts() const { return counts_; }
+  LargeVector<std::int64_t>& all_sums() { return sums_; }
+  const LargeVector<std::int64_t>& all_sums() const { return sums_; }
+  LargeVector<std::uint32_t>& all_counts() { return counts_; }
+  const LargeVector<std::uint32_t>& all_counts() const { return counts_; }
 
  private:
-  void add_square(const TileSamples& tile, int begin, int end, int x, int y);
-  void add_ragged(const TileSamples& tile, int begin, int end, int x, int y);
+  void add_strip(std::span<const TileSamples> tiles, int y0, int y1, int left, int top);
 
   /// Where the counts of a row begin.
   std::size_t row(int half, int y) const { return place((half * height_ + y) * std::ptrdiff_t{terms}); }
@@ -87,8 +88,8 @@ class DifferenceSums {
   bool kept_ = false;
   int width_ = 0, height_ = 0;
   double scale_ = 1;
-  std::vector<std::int64_t> sums_;
-  std::vector<std::uint32_t> counts_;
+  LargeVector<std::int64_t> sums_;
+  LargeVector<std::uint32_t> counts_;
 };
 
 }  // namespace castray

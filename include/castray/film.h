@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "castray/differences.h"
 #include "castray/image.h"
+#include "castray/large_allocator.h"
 #include "castray/vec.h"
 
 namespace castray {
@@ -62,8 +64,9 @@ class Film {
   void keep_differences();
   const DifferenceSums& differences() const { return differences_; }
 
-  /// Adds rows y0 <= y < y1 of a tile, y of the full image, to a film that keeps differences.
-  void add(const TileSamples& tile, int y0, int y1);
+  /// Adds rows y0 <= y < y1 of one sample of tiles side by side, from left to right, y of the full image, to
+  /// a film that keeps differences.
+  void add(std::span<const TileSamples> tiles, int y0, int y1);
 
   /// Starts to keep splats: what paths from lights bring to the pixels that they happen to be seen in.
   void keep_splats();
@@ -137,7 +140,6 @@ class Film {
   struct Sum {
     double high = 0, low = 0;
     Sum& operator+=(const Sum& other);  ///< exact
-    void add(double v, double scale);   ///< rounded as above
     double value() const { return high + low; }
   };
   /// The sums of one replicate.
@@ -148,6 +150,8 @@ class Film {
     std::vector<Sum> splats;                 ///< 3 per block, if splats are kept
     std::vector<std::uint64_t> light_paths;  ///< per block, the sum over its pixels
   };
+  /// Adds radiance, rounded as above, to the sums of three channels.
+  void add(Sum* sums, const Vec3f& radiance) const;
   void add(const Replicate& theirs, const Blocks& their_blocks);
 
   friend struct FilmFile;  // reads and writes the sums as they are
@@ -165,8 +169,8 @@ class Film {
 
   Window window_;
   double scale_ = 1;
-  std::vector<Sum> sums_;  ///< 3 per pixel
-  std::vector<std::uint32_t> counts_;
+  LargeVector<Sum> sums_;  ///< 3 per pixel
+  LargeVector<std::uint32_t> counts_;
   std::vector<Sum> splats_;  ///< 3 per pixel, or none
   std::vector<std::uint64_t>
       light_paths_;  ///< per pixel, as windows and samples of merged films differ; or none

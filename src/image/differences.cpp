@@ -1,9 +1,9 @@
 #include "castray/differences.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
+#include <span>
 
 #include "core/vector_clones.h"
 
@@ -11,8 +11,7 @@ namespace castray {
 
 namespace {
 
-constexpr int columns = tile_side, tile_pixels = tile_side * tile_side;
-constexpr unsigned all_columns = 0xff;
+constexpr int columns = tile_side;
 constexpr double brightest_sample = 0x1p50;  ///< in units
 
 // A number for each column of a tile.
@@ -20,9 +19,18 @@ using Floats [[gnu::vector_size(columns * sizeof(float))]] = float;
 using Doubles [[gnu::vector_size(columns * sizeof(double))]] = double;
 using Longs [[gnu::vector_size(columns * sizeof(std::int64_t))]] = std::int64_t;
 using Counts [[gnu::vector_size(columns * sizeof(std::uint32_t))]] = std::uint32_t;
+using Bytes [[gnu::vector_size(columns)]] = std::int8_t;
 
-unsigned row_bits(std::uint64_t tile, int row) {
-  return static_cast<unsigned>(tile >> (row * columns)) & all_columns;
+// Vectors are returned in arguments: functions for several instruction sets have no one way to return them.
+
+template <class Vector, class T>
+void load(const T* from, Vector& values) {
+  std::memcpy(&values, from, sizeof values);
+}
+
+template <class Vector, class T>
+void store(const Vector& values, T* to) {
+  std::memcpy(to, &values, sizeof values);
 }
 
 /// The nearest whole numbers, of 0 <= x < 2^51: adding 1.5 * 2^52 leaves them in the last bits.
@@ -33,75 +41,124 @@ void round_to(const Doubles& x, Longs& whole) {
   whole -= std::bit_cast<std::int64_t>(shift);
 }
 
-/// Of a tile's row, in three channels.
-struct RowValues {
-  Longs channel[3] = {};
-};
-
-/// The reflected radiance of row r, in units.
-void read_reflected(const TileSamples& tile, int r, double per_unit, RowValues& values) {
-  for (int c = 0; c < 3; ++c) {
-    Floats radiance, emitted;
-    std::memcpy(&radiance, tile.radiance[c] + r * columns, sizeof radiance);
-    std::memcpy(&emitted, tile.emitted[c] + r * columns, sizeof emitted);
-    const Floats reflected = radiance - emitted;
-    const Doubles x = __builtin_convertvector(reflected > 0 ? reflected : Floats{}, Doubles) * per_unit;
-    round_to(x < brightest_sample ? x : brightest_sample - Doubles{}, values.channel[c]);
-  }
+/// The reflected radiance of row r of a tile in channel c, in units.
+void read_reflected(const TileSamples& tile, int r, int c, double per_unit, Longs& whole) {
+  Floats radiance, emitted;
+  load(tile.radiance[c] + r * columns, radiance);
+  load(tile.emitted[c] + r * columns, emitted);
+  const Floats reflected = radiance - emitted;
+  const Doubles x = __builtin_convertvector(reflected > 0 ? reflected : Floats{}, Doubles) * per_unit;
+  round_to(x < brightest_sample ? x : brightest_sample - Doubles{}, whole);
 }
 
-/// Adds the columns that have a bit to the sums of pixels x to x + 7, all in the window.
-void add_whole_row(const RowValues& values, unsigned bits, std::uint32_t* counts, std::int64_t* sums,
-                   int width, int x) {
-  constexpr Longs bit_of_column = {1, 2, 4, 8, 16, 32, 64, 128};
-  const Longs mask = (bit_of_column & std::int64_t{bits}) != 0;
-  const auto add = [&](auto* to, const auto& more) {
-    auto sum = more;
-    std::memcpy(&sum, to + x, sizeof sum);
-    sum += more;
-    std::memcpy(to + x, &sum, sizeof sum);
-  };
-  add(counts, __builtin_convertvector(-mask, Counts));
-  for (int c = 0; c < 3; ++c) {
-    const Longs more = values.channel[c] & mask;
-    add(sums + std::ptrdiff_t{c} * width, more);
-  }
+/// All ones in the columns of row r that have a bit.
+void bytes_of_bits(std::uint64_t tile, int r, Bytes& bytes) {
+  constexpr Bytes bit_of_column = {1, 2, 4, 8, 16, 32, 64, -128};
+  bytes = (bit_of_column & static_cast<std::int8_t>(tile >> (r * columns))) != 0;
 }
 
-/// The same for a row that reaches out of the window, where it has no bits.
-void add_part_of_row(const RowValues& values, unsigned bits, std::uint32_t* counts, std::int64_t* sums,
-                     int width, int x) {
-  for (int i = 0; i < columns; ++i) {
-    if ((bits >> i & 1) == 0) continue;
-    ++counts[x + i];
-    for (int c = 0; c < 3; ++c) sums[c * width + x + i] += values.channel[c][i];
-  }
-}
-
-/// Which pixel of a ragged tile has a place.
-class RaggedPlaces {
+/// What one sample of some tiles side by side gives to the pixels of the window, and which tile each has it
+/// from.
+class TileStrip {
  public:
-  explicit RaggedPlaces(const TileSamples& tile) : tile_(tile) {
-    pixels_.fill(none);
-    for (int i = 0; i < tile_pixels; ++i) pixels_[place(i)] = static_cast<std::int8_t>(i);
-  }
-  int column(int i) const { return tile_.x_of(i) - tile_.x; }
-  int row(int i) const { return tile_.y_of(i) - tile_.y; }
+  static constexpr int most_tiles = 8;
 
-  static constexpr int none = -1;
-  int right_of(int i) const { return pixels_[place(i) + 1]; }
-  int below(int i) const { return pixels_[place(i) + stride]; }
+  /// (left,top): the window's first pixel in the full image.
+  TileStrip(std::span<const TileSamples> tiles, int left, int top, double per_unit)
+      : x_((tiles[0].x - left - tile_reach) & -columns),
+        y_(tiles[0].y - top - tile_reach),
+        from_x_(left + x_),
+        from_y_(top + y_) {
+    std::memset(tile_of_, no_tile, sizeof tile_of_);
+    std::memset(kept_, 0, sizeof kept_);
+    for (std::size_t k = 0; k < tiles.size(); ++k)
+      for (int r = 0; r < tile_side; ++r) {
+        Longs row[3];
+        for (int c = 0; c < 3; ++c) read_reflected(tiles[k], r, c, per_unit, row[c]);
+        if (tiles[k].ragged_x)
+          put_pixels(tiles[k], static_cast<std::int8_t>(k), r, row);
+        else
+          put_row(tiles[k], static_cast<std::int8_t>(k), r, row);
+      }
+  }
+
+  static constexpr int width = (most_tiles + 2) * columns, height = tile_side + 2 * tile_reach;
+  /// Of its first column and row in the window; may lie outside.
+  int x() const { return x_; }
+  int y() const { return y_; }
+
+  /// Of eight columns from `column` on: which of their samples count, and where the neighbour to the right,
+  /// or below, has a sample of the same tile.
+  void kept(int row, int column, Bytes& which) const { load(&kept_[row][column], which); }
+  void same_tile(int row, int column, int right, int below, Bytes& which) const {
+    Bytes here, there;
+    load(&tile_of_[row][column], here);
+    load(&tile_of_[row + below][column + right], there);
+    which = here == there;
+  }
+  /// The values of a channel.
+  void values(int channel, int row, int column, Longs& values) const {
+    load(&values_[channel][row][column], values);
+  }
 
  private:
-  static constexpr std::size_t stride = columns + 2 * tile_reach + 1;
+  static constexpr std::int8_t no_tile = -1;
 
-  std::size_t place(int i) const {
-    return static_cast<std::size_t>(row(i) + tile_reach) * stride +
-           static_cast<std::size_t>(column(i) + tile_reach);
+  void put_row(const TileSamples& tile, std::int8_t k, int r, const Longs (&row)[3]) {
+    const int x = tile.x - from_x_, y = tile.y + r - from_y_;
+    Bytes smooth, kept;
+    bytes_of_bits(tile.smooth, r, smooth);
+    bytes_of_bits(tile.kept, r, kept);
+    store(k | ~smooth, &tile_of_[y][x]);
+    store(smooth & kept, &kept_[y][x]);
+    for (int c = 0; c < 3; ++c) store(row[c], &values_[c][y][x]);
   }
 
-  const TileSamples& tile_;
-  std::array<std::int8_t, stride * stride> pixels_;
+  void put_pixels(const TileSamples& tile, std::int8_t k, int r, const Longs (&row)[3]) {
+    for (int i = r * columns; i < (r + 1) * columns; ++i) {
+      if ((tile.smooth >> i & 1) == 0) continue;
+      const int x = tile.x_of(i) - from_x_, y = tile.y_of(i) - from_y_;
+      tile_of_[y][x] = k;
+      kept_[y][x] = (tile.kept >> i & 1) != 0 ? -1 : 0;
+      for (int c = 0; c < 3; ++c) values_[c][y][x] = row[c][i % columns];
+    }
+  }
+
+  int x_, y_, from_x_, from_y_;  ///< of the first column and row, in the window and in the full image
+  // one more row and column, in which no pixel has a neighbour
+  std::int8_t tile_of_[height + 1][width + columns], kept_[height][width];
+  std::int64_t values_[3][height + 1][width + columns];
+};
+
+/// Where a row of the window keeps the sums and counts of one term.
+struct RowOfTerm {
+  std::int64_t* sums;
+  std::uint32_t* counts;
+  int width;
+
+  /// Adds values to the eight pixels from x on in which `which` is all ones: pixels of the window.
+  void add(const Bytes& which, const Longs (&values)[3], int x) const {
+    if (x < 0 || x + columns > width) return add_some(which, values, x);
+    const Longs mask = __builtin_convertvector(which, Longs);
+    Counts count;
+    load(counts + x, count);
+    store(count - __builtin_convertvector(which, Counts), counts + x);
+    for (int c = 0; c < 3; ++c) {
+      std::int64_t* to = sums + c * width + x;
+      Longs sum;
+      load(to, sum);
+      store(sum + (values[c] & mask), to);
+    }
+  }
+
+ private:
+  void add_some(const Bytes& which, const Longs (&values)[3], int x) const {
+    for (int i = 0; i < columns; ++i) {
+      if (which[i] == 0) continue;
+      ++counts[x + i];
+      for (int c = 0; c < 3; ++c) sums[c * width + x + i] += values[c][i];
+    }
+  }
 };
 
 }  // namespace
@@ -114,73 +171,42 @@ DifferenceSums::DifferenceSums(int width, int height, double scale)
       sums_(row(halves, 0) * channels),
       counts_(row(halves, 0)) {}
 
-void DifferenceSums::add(const TileSamples& tile, int begin, int end, int x, int y) {
-  if (begin >= end) return;
-  if (tile.ragged_x)
-    add_ragged(tile, begin, end, x, y);
-  else
-    add_square(tile, begin, end, x, y);
+void DifferenceSums::add(std::span<const TileSamples> tiles, int y0, int y1, int left, int top) {
+  for (; !tiles.empty(); tiles = tiles.subspan(std::min<std::size_t>(tiles.size(), TileStrip::most_tiles)))
+    add_strip(tiles.first(std::min<std::size_t>(tiles.size(), TileStrip::most_tiles)), y0, y1, left, top);
 }
 
 CASTRAY_VECTOR_CLONES
-void DifferenceSums::add_ragged(const TileSamples& tile, int begin, int end, int x, int y) {
-  const double per_unit = 1 / radiance_unit();
-  const int half = static_cast<int>(tile.sample & 1);
-  const RaggedPlaces places(tile);
-  RowValues rows[columns];
-  for (int r = 0; r < columns; ++r) read_reflected(tile, r, per_unit, rows[r]);
-  const auto value = [&](int i, int c) { return rows[i / columns].channel[c][i % columns]; };
-  const auto is_smooth = [&](int i) { return i != RaggedPlaces::none && (tile.smooth >> i & 1) != 0; };
-  for (int i = 0; i < tile_pixels; ++i) {
-    const int r = places.row(i);
-    if (r < begin || r >= end || (tile.kept >> i & 1) == 0 || !is_smooth(i)) continue;
-    const auto add = [&](Term term, auto values) {
-      const std::size_t at = row(half, y + r) + place(term),
-                        column = static_cast<std::size_t>(x + places.column(i));
-      ++counts_[at + column];
-      for (int c = 0; c < channels; ++c) sums_[at * channels + place(c) + column] += values(c);
+void DifferenceSums::add_strip(std::span<const TileSamples> tiles, int y0, int y1, int left, int top) {
+  const int half = static_cast<int>(tiles[0].sample & 1);
+  const TileStrip strip(tiles, left, top, 1 / radiance_unit());
+  const int begin = std::max(strip.y(), y0 - top), end = std::min(strip.y() + TileStrip::height, y1 - top);
+  for (int y = begin; y < end; ++y) {
+    const auto row_of = [&](Term term) {
+      const std::size_t at = row(half, y) + place(term);
+      return RowOfTerm{sums_.data() + at * channels, counts_.data() + at, width_};
     };
-    const auto add_difference = [&](Term term, int neighbour) {
-      if (is_smooth(neighbour)) add(term, [&](int c) { return value(neighbour, c) - value(i, c); });
-    };
-    add(own, [&](int c) { return value(i, c); });
-    add_difference(right, places.right_of(i));
-    add_difference(below, places.below(i));
-  }
-}
-
-CASTRAY_VECTOR_CLONES
-void DifferenceSums::add_square(const TileSamples& tile, int begin, int end, int x, int y) {
-  const double per_unit = 1 / radiance_unit();
-  const int half = static_cast<int>(tile.sample & 1);
-  const bool inside = x >= 0 && x + columns <= width_;
-  RowValues here, next, difference;
-  read_reflected(tile, begin, per_unit, here);
-  for (int r = begin; r < end; ++r) {
-    const bool last = r + 1 == columns;
-    if (!last) read_reflected(tile, r + 1, per_unit, next);
-    const unsigned smooth = row_bits(tile.smooth, r), kept = row_bits(tile.kept, r) & smooth,
-                   smooth_below = last ? 0 : row_bits(tile.smooth, r + 1);
-    const auto add = [&](Term term, const RowValues& values, unsigned bits) {
-      const std::size_t at = row(half, y + r) + place(term);
-      std::uint32_t* counts = counts_.data() + at;
-      std::int64_t* sums = sums_.data() + at * channels;
-      if (inside)
-        add_whole_row(values, bits, counts, sums, width_, x);
-      else
-        add_part_of_row(values, bits, counts, sums, width_, x);
-    };
-    if (kept) {
-      add(own, here, kept);
-      for (int c = 0; c < 3; ++c)
-        difference.channel[c] =
-            __builtin_shufflevector(here.channel[c], here.channel[c], 1, 2, 3, 4, 5, 6, 7, 7) -
-            here.channel[c];
-      add(right, difference, kept & smooth >> 1);
-      for (int c = 0; c < 3; ++c) difference.channel[c] = next.channel[c] - here.channel[c];
-      add(below, difference, kept & smooth_below);
+    const RowOfTerm of_own = row_of(own), of_right = row_of(right), of_below = row_of(below);
+    const int r = y - strip.y();
+    for (int column = 0; column < TileStrip::width; column += columns) {
+      Bytes kept, with_right, with_below;
+      strip.kept(r, column, kept);
+      if (std::bit_cast<std::uint64_t>(kept) == 0) continue;
+      Longs here[3], to_right[3], to_below[3];
+      for (int c = 0; c < 3; ++c) {
+        strip.values(c, r, column, here[c]);
+        strip.values(c, r, column + 1, to_right[c]);
+        strip.values(c, r + 1, column, to_below[c]);
+        to_right[c] -= here[c];
+        to_below[c] -= here[c];
+      }
+      strip.same_tile(r, column, 1, 0, with_right);
+      strip.same_tile(r, column, 0, 1, with_below);
+      const int x = strip.x() + column;
+      of_own.add(kept, here, x);
+      of_right.add(kept & with_right, to_right, x);
+      of_below.add(kept & with_below, to_below, x);
     }
-    here = next;
   }
 }
 

@@ -4,15 +4,20 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include "castray/error.h"
 #include "core/text.h"
 #include "core/two_sum.h"
+#include "core/vector_clones.h"
 
 namespace castray {
 
 namespace {
+
+using Doubles [[gnu::vector_size(4 * sizeof(double))]] = double;
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
 
 /// The union of two sets of disjoint ranges, neighbours joined.
 std::vector<SampleRange> joined_ranges(std::vector<SampleRange> ranges,
@@ -70,24 +75,36 @@ Film::Film(const Window& window, double brightest)
       counts_(static_cast<std::size_t>(window.width()) * static_cast<std::size_t>(window.height())) {}
 
 Film::Sum& Film::Sum::operator+=(const Sum& other) {
-  const ExactSum exact = two_sum(high, other.high);
+  ExactSum<double> exact;
+  two_sum(high, other.high, exact);
   high = exact.sum;
   low += other.low + exact.error;
   return *this;
 }
 
-void Film::Sum::add(double v, double scale) {
-  const double small = scale * 0x1p-36;
-  const double rounder = scale * 0x1.8p-8;  // 1.5 * 2^52 quanta of 2^-60: adding it rounds to a quantum
-  if (std::abs(v) < small) v = (v + rounder) - rounder;
-  const ExactSum next = two_sum(high, v);
-  high = next.sum;
-  low += next.error;
+void Film::add(Sum* sums, const Vec3f& radiance) const {
+  const double small = scale_ * 0x1p-36;
+  const double rounder = scale_ * 0x1.8p-8;  // 1.5 * 2^52 quanta of 2^-60: adding it rounds to a quantum
+  const Doubles v = {double{radiance.x}, double{radiance.y}, double{radiance.z}, 0};
+  Doubles first, last;  // the pairs of two channels, and of the last two
+  std::memcpy(&first, sums, sizeof first);
+  std::memcpy(&last, sums + 1, sizeof last);
+  const Doubles high = __builtin_shufflevector(first, last, 0, 2, 6, 6),
+                low = __builtin_shufflevector(first, last, 1, 3, 7, 7);
+  const Doubles rounded = (v < small) & (v > -small) ? (v + rounder) - rounder : v;
+  ExactSum<Doubles> next;
+  two_sum(high, rounded, next);
+  next.error += low;
+  first = __builtin_shufflevector(next.sum, next.error, 0, 4, 1, 5);
+  const Pair pair = __builtin_shufflevector(next.sum, next.error, 2, 6);
+  std::memcpy(&sums->high, &first, sizeof first);
+  std::memcpy(&sums[2].high, &pair, sizeof pair);
 }
 
+CASTRAY_VECTOR_CLONES
 void Film::add(int x, int y, const Vec3f& radiance) {
   const std::size_t pixel = index(x, y);
-  for (int c = 0; c < 3; ++c) sums_[3 * pixel + static_cast<std::size_t>(c)].add(radiance[c], scale_);
+  add(&sums_[3 * pixel], radiance);
   ++counts_[pixel];
 }
 
@@ -100,19 +117,19 @@ void Film::add_light_paths(std::uint64_t count) {
   for (std::uint64_t& paths : light_paths_) paths += count;
 }
 
-void Film::add_splat(int x, int y, const Vec3f& radiance) {
-  const std::size_t pixel = index(x, y);
-  for (int c = 0; c < 3; ++c) splats_[3 * pixel + static_cast<std::size_t>(c)].add(radiance[c], scale_);
-}
+CASTRAY_VECTOR_CLONES
+void Film::add_splat(int x, int y, const Vec3f& radiance) { add(&splats_[3 * index(x, y)], radiance); }
 
 void Film::keep_differences() { differences_ = DifferenceSums(width(), height(), scale_); }
 
-void Film::add(const TileSamples& tile, int y0, int y1) {
-  for (std::uint64_t kept = tile.kept; kept != 0; kept &= kept - 1) {
-    const int i = std::countr_zero(kept), x = tile.x_of(i), y = tile.y_of(i);
-    if (y >= y0 && y < y1) add(x, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
-  }
-  differences_.add(tile, y0 - tile.y, y1 - tile.y, tile.x - window_.x0, tile.y - window_.y0);
+CASTRAY_VECTOR_CLONES
+void Film::add(std::span<const TileSamples> tiles, int y0, int y1) {
+  for (const TileSamples& tile : tiles)
+    for (std::uint64_t kept = tile.kept; kept != 0; kept &= kept - 1) {
+      const int i = std::countr_zero(kept), x = tile.x_of(i), y = tile.y_of(i);
+      if (y >= y0 && y < y1) add(x, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
+    }
+  differences_.add(tiles, y0, y1, window_.x0, window_.y0);
 }
 
 Vec3d Film::mean(int x, int y) const {

@@ -190,18 +190,20 @@ struct FilmFile {
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
   }
 
-  static void append_sums(std::string& bytes, const std::vector<Film::Sum>& sums) {
+  template <class Sums>
+  static void append_sums(std::string& bytes, const Sums& sums) {
     for (const Film::Sum& sum : sums) {
-      const ExactSum rounded = two_sum(sum.high, sum.low);
+      ExactSum<double> rounded;
+      two_sum(sum.high, sum.low, rounded);
       append(bytes, std::array{rounded.sum, rounded.error});
     }
   }
 
-  template <class T>
-  static const char* read_values(const char* at, std::vector<T>& values, std::size_t count) {
+  template <class Values>
+  static const char* read_values(const char* at, Values& values, std::size_t count) {
     values.resize(count);
-    if (count > 0) std::memcpy(values.data(), at, count * sizeof(T));
-    return at + count * sizeof(T);
+    if (count > 0) std::memcpy(values.data(), at, count * sizeof values[0]);
+    return at + count * sizeof values[0];
   }
 
   static void demand(bool good, const char* what) {

@@ -99,7 +99,7 @@ void keep_known(PixelCouplings& weights, const DifferenceSums& sums, int half, i
 
 /// Whether a half has two samples of any pixel. Of one sample, differences are those of the means.
 bool may_need_corrections(const DifferenceSums& sums) {
-  const std::vector<std::uint32_t>& counts = sums.all_counts();
+  const auto& counts = sums.all_counts();
   return std::any_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count > 1; });
 }
 

@@ -2,14 +2,15 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
+
+#include "castray/large_allocator.h"
 
 namespace castray {
 
 /// A value of every pixel, with a border of zeros one pixel wide.
 struct PixelPlane {
   int stride = 0;
-  std::vector<float> values;
+  LargeVector<float> values;
 
   PixelPlane() = default;
   PixelPlane(int width, int height)

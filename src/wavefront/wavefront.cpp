@@ -270,7 +270,7 @@ class WavefrontRun {
     const int first_lock = lock_of(first), last_lock = lock_of(end - 1);
     for (int l = first_lock; l <= last_lock; ++l)
       locks[l - first_lock] = std::unique_lock(row_locks_[static_cast<std::size_t>(l)]);
-    for (int k = 0; k < job.tiles; ++k) film.add(tiles[k], first, end);
+    film.add({tiles, static_cast<std::size_t>(job.tiles)}, first, end);
   }
 
   TileSamples tile_samples(const TileJob& job, int k, bool ragged, const TileResult& result,

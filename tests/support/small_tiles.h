@@ -54,7 +54,7 @@ class TiledFilm : public Film {
       tile.smooth |= std::uint64_t{1} << i;
       if (x >= w.x0 && x < w.x1 && y >= w.y0 && y < w.y1) tile.kept |= std::uint64_t{1} << i;
     }
-    add(tile, std::max(top, w.y0), std::min(top + 8, w.y1));
+    add({&tile, 1}, std::max(top, w.y0), std::min(top + 8, w.y1));
   }
 };
 

@@ -120,7 +120,7 @@ TEST_CASE("pixels that see an edge have samples, but no part in differences") {
     tile.radiance[c] = radiance.data();
     tile.emitted[c] = emitted.data();
   }
-  film.add(tile, 0, 8);
+  film.add({&tile, 1}, 0, 8);
   const DifferenceSums& sums = film.differences();
   using Term = DifferenceSums::Term;
   CHECK(film.count(5, 3) == 1);
@@ -163,8 +163,8 @@ TEST_CASE("neighbours in a ragged tile have differences, wherever in it they are
   }
   Film film({24, 24, 0, 0, 24, 24}, 64);
   film.keep_differences();
-  film.add(tile, 0, 10);  // in two parts, as where rows are locked one after the other
-  film.add(tile, 10, 24);
+  film.add({&tile, 1}, 0, 10);  // in two parts, as where rows are locked one after the other
+  film.add({&tile, 1}, 10, 24);
   const DifferenceSums& sums = film.differences();
   using Term = DifferenceSums::Term;
   int differences = 0;
