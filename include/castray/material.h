@@ -34,6 +34,10 @@ struct Texture {
   TextureSource source{};
 };
 
+/// What a camera ray reads of an image: the value at the point that it meets, or the mean of values all over
+/// what its pixel sees of the surface there (materials/footprint.h).
+enum class TextureFilter : std::uint8_t { none, pixel };
+
 /// How an image gives a parameter its value at a texture coordinate (u,v):
 ///
 ///     constant of the material * (base + gain * texel(scale * (u,v) + offset))
@@ -46,6 +50,7 @@ struct TextureMap {
   bool clamp = false;  ///< outside the image its border goes on; otherwise the image repeats
   Channel channel = Channel::color;
   float base = 0, gain = 1;
+  TextureFilter filter = TextureFilter::none;  ///< `pixel`: of colours of reflection and transmission alone
 
   bool used() const { return texture >= 0; }
   bool operator==(const TextureMap&) const = default;
@@ -91,6 +96,12 @@ struct Material {
   bool has_maps() const {
     for (const TextureMap& map : maps)
       if (map.used()) return true;
+    return false;
+  }
+  /// Whether an image is read by pixels.
+  bool filters_maps() const {
+    for (const TextureMap& map : maps)
+      if (map.used() && map.filter != TextureFilter::none) return true;
     return false;
   }
   /// Whether an image changes alpha.

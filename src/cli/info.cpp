@@ -36,6 +36,7 @@ std::string describe(const TextureMap& map, const MaterialKey& key, const Scene&
   if (map.scale != TextureMap().scale) text += ", uv times " + text_of(map.scale);
   if (map.offset != TextureMap().offset) text += ", uv plus " + text_of(map.offset);
   if (map.clamp) text += ", clamped";
+  if (map.filter == TextureFilter::pixel) text += ", filtered by pixels";
   const bool bends = key.kind == MaterialKey::Kind::image_only;
   if (bends && map.gain != 1) text += fmt::format(", gain {:g}", map.gain);
   if (!bends && (map.base != 0 || map.gain != 1))

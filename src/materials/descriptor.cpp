@@ -124,6 +124,11 @@ const std::vector<std::string_view>& channel_names() {
   return names;
 }
 
+const std::vector<std::string_view>& filter_names() {
+  static const std::vector<std::string_view> names{"none", "pixel"};
+  return names;
+}
+
 int floats_of(const MaterialKey& key) { return key.kind == MaterialKey::Kind::color ? 3 : 1; }
 
 Vec3d value_of(const MaterialKey& key, const Material& material) {

@@ -81,6 +81,8 @@ bool has_lobe_rows(const Material& material);
 
 /// Of Channel, as scene files name them.
 const std::vector<std::string_view>& channel_names();
+/// By TextureFilter.
+const std::vector<std::string_view>& filter_names();
 
 /// Of its value.
 int floats_of(const MaterialKey& key);

@@ -80,6 +80,19 @@ struct KernelMaterial {
 };
 inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
 
+/// Where a pixel's footprint is probed (materials/footprint.h): a (0,2)-net of the unit square.
+inline constexpr int footprint_probes = 16;
+inline constexpr float footprint_probe[footprint_probes][2] = {
+    {0 / 16.f, 0 / 16.f},  {1 / 16.f, 8 / 16.f},   {2 / 16.f, 4 / 16.f},  {3 / 16.f, 12 / 16.f},
+    {4 / 16.f, 2 / 16.f},  {5 / 16.f, 10 / 16.f},  {6 / 16.f, 6 / 16.f},  {7 / 16.f, 14 / 16.f},
+    {8 / 16.f, 1 / 16.f},  {9 / 16.f, 9 / 16.f},   {10 / 16.f, 5 / 16.f}, {11 / 16.f, 13 / 16.f},
+    {12 / 16.f, 3 / 16.f}, {13 / 16.f, 11 / 16.f}, {14 / 16.f, 7 / 16.f}, {15 / 16.f, 15 / 16.f}};
+/// A point of a footprint counts as no more than so many times as far away as its middle.
+inline constexpr float footprint_farthest = 16;
+
+/// Of Footprint: the far end of what a pixel sees counts as no more than 16 times as far away as its middle.
+inline constexpr float least_nearing = 1 / 16.f;
+
 /// Texels of 1 to 4 channels side by side, top row first: bytes, of which `values` has the linear value; or
 /// linear floats.
 struct KernelTexture {
@@ -98,6 +111,7 @@ struct KernelMap {
   uint32_t is_colors;  ///< 1: the vertices' colours instead of the image
   uint32_t squared;    ///< 1: multiplies twice
   uint32_t clamp;
+  uint32_t by_pixel;  ///< 1: TextureFilter::pixel
   Channel channel;
   float scale[2], offset[2];
   float base, gain;
@@ -124,6 +138,7 @@ struct MaterialTables {
   const KernelAlbedo* albedos;
   /// `materials` where one has a complex index, absorbs, or has another back; else null.
   const KernelMaterial *indices, *absorbing, *pairs;
+  bool filtered;  ///< whether a map reads the pixels' footprints
 };
 
 /// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density

@@ -37,18 +37,6 @@ void copy(const Vec3d& from, float (&to)[3]) {
   for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
 }
 
-KernelMap map_of(const TextureMap& map, const KernelTexture& texture) {
-  KernelMap k{};
-  k.texture = texture;
-  k.clamp = map.clamp;
-  k.channel = map.channel;
-  std::ranges::copy(map.scale, k.scale);
-  std::ranges::copy(map.offset, k.offset);
-  k.base = map.base;
-  k.gain = map.gain;
-  return k;
-}
-
 }  // namespace
 
 KernelMaterials::KernelMaterials(const Scene& scene) {
@@ -132,7 +120,8 @@ MaterialTables KernelMaterials::tables() const {
           }),
           .pairs = where_any([this](const KernelMaterial& m) {
             return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
-          })};
+          }),
+          .filtered = filtered_};
 }
 
 std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lobe) {
@@ -153,7 +142,7 @@ std::uint32_t KernelMaterials::albedo_rows() {
 
 const KernelMap* KernelMaterials::single_map(const Scene& scene, const TextureMap& map, float gain) {
   if (!map.used()) return nullptr;
-  KernelMap k = map_of(map, kernel_texture(scene.textures[static_cast<std::size_t>(map.texture)]));
+  KernelMap k = map_of(scene, map);
   if (k.channel == Channel::color) k.channel = Channel::luminance;
   k.gain *= gain;
   return &maps_.emplace_back(1, k).front();
@@ -171,7 +160,7 @@ std::vector<KernelMap> KernelMaterials::maps_of(const Scene& scene, const Materi
   for (const MaterialKey& key : descriptor_of(m.type).keys) {
     if (!key.slot || !key.parameter || !m.map(*key.parameter).used()) continue;
     const TextureMap& map = m.map(*key.parameter);
-    KernelMap k = map_of(map, kernel_texture(scene.textures[static_cast<std::size_t>(map.texture)]));
+    KernelMap k = map_of(scene, map);
     k.slot = *key.slot;
     k.count = floats_of(key);
     k.squared = key.kind == MaterialKey::Kind::squared;
@@ -179,6 +168,20 @@ std::vector<KernelMap> KernelMaterials::maps_of(const Scene& scene, const Materi
     maps.push_back(k);
   }
   return maps;
+}
+
+KernelMap KernelMaterials::map_of(const Scene& scene, const TextureMap& map) {
+  KernelMap k{};
+  k.texture = kernel_texture(scene.textures[static_cast<std::size_t>(map.texture)]);
+  k.by_pixel = map.filter == TextureFilter::pixel && !scene.triangle_uvs.empty();
+  filtered_ |= k.by_pixel != 0;
+  k.clamp = map.clamp;
+  k.channel = map.channel;
+  std::ranges::copy(map.scale, k.scale);
+  std::ranges::copy(map.offset, k.offset);
+  k.base = map.base;
+  k.gain = map.gain;
+  return k;
 }
 
 KernelTexture KernelMaterials::kernel_texture(const Texture& texture) {

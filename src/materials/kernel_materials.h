@@ -30,6 +30,7 @@ class KernelMaterials {
   void add(const Scene& scene, const Material& m);
   std::uint32_t albedo_offset(double alpha, const LobeAlbedo& lobe);
   std::vector<KernelMap> maps_of(const Scene& scene, const Material& m);
+  KernelMap map_of(const Scene& scene, const TextureMap& map);
   KernelTexture kernel_texture(const Texture& texture);
 
   std::uint32_t albedo_rows();  ///< the offset of LobeAlbedoRows
@@ -40,7 +41,8 @@ class KernelMaterials {
   std::map<double, std::uint32_t> albedo_offsets_;  ///< by alpha
   std::optional<LobeAlbedoRows> rows_;
   std::uint32_t first_row_ = 0;
-  std::deque<std::vector<KernelMap>> maps_;               ///< of each of `details`
+  std::deque<std::vector<KernelMap>> maps_;  ///< of each of `details`
+  bool filtered_ = false;
   std::deque<std::array<std::uint8_t, 8>> small_images_;  ///< of fewer than four bytes
 };
 

@@ -7,6 +7,7 @@
 
 #include "castray/scene.h"
 #include "materials/descriptor.h"
+#include "materials/footprint.h"
 #include "materials/ggx.h"
 #include "materials/texture.h"
 
@@ -35,10 +36,14 @@ struct SurfaceValues {
   const T& at(int slot) const { return value[static_cast<std::size_t>(slot)]; }
   Vec3<T> color(int slot) const { return {at(slot), at(slot + 1), at(slot + 2)}; }
 
-  /// Multiplies what `key` sets by what an image says.
-  void multiply(const MaterialKey& key, const Texture& texture, const TextureMap& map, T u, T v) {
+  /// Multiplies what `key` sets by what an image says; where the map filters, on the mean over what a pixel
+  /// sees.
+  void multiply(const MaterialKey& key, const Texture& texture, const TextureMap& map, T u, T v,
+                const std::optional<Footprint<T>>& seen) {
     if (key.kind == MaterialKey::Kind::color) {
-      const Vec3<T> factor = map_color(texture, map, u, v);
+      const bool filters = seen && map.filter == TextureFilter::pixel;
+      const Vec3<T> factor =
+          filters ? footprint_color(texture, map, u, v, *seen) : map_color(texture, map, u, v);
       for (int c = 0; c < 3; ++c) at(*key.slot + c) *= factor[c];
     } else {
       const T factor = map_number(texture, map, u, v);
@@ -87,9 +92,11 @@ Vec3<T> vertex_color_at(const Scene& scene, const TrianglePlace<T>& place) {
                            Vec3<T>(scene.colors[index[2]]));
 }
 
-/// The one place where images become values: those of `m` at a point of `scene`.
+/// The one place where images become values: those of `m` at a point of `scene`. `seen`: the pixel's
+/// footprint there, if a camera ray has found the point.
 template <class T>
-SurfaceValues<T> surface_values(const Scene& scene, const Material& m, const TrianglePlace<T>& place) {
+SurfaceValues<T> surface_values(const Scene& scene, const Material& m, const TrianglePlace<T>& place,
+                                const std::optional<Footprint<T>>& seen = {}) {
   SurfaceValues<T> values(m);
   if (uses_vertex_colors(m)) {
     const Vec3<T> color = vertex_color_at(scene, place);
@@ -100,7 +107,8 @@ SurfaceValues<T> surface_values(const Scene& scene, const Material& m, const Tri
   for (const MaterialKey& key : descriptor_of(m.type).keys) {
     if (!key.slot || !key.parameter || !m.map(*key.parameter).used()) continue;
     const TextureMap& map = m.map(*key.parameter);
-    values.multiply(key, scene.textures[static_cast<std::size_t>(map.texture)], map, (*uv)[0], (*uv)[1]);
+    values.multiply(key, scene.textures[static_cast<std::size_t>(map.texture)], map, (*uv)[0], (*uv)[1],
+                    seen);
   }
   values.keep_alpha_rough(m);
   return values;

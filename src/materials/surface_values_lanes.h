@@ -1,8 +1,8 @@
 #pragma once
 
 #include "materials/bsdf_lanes.h"
+#include "materials/footprint_lanes.h"
 #include "materials/parameters_lanes.h"
-#include "materials/texture_lanes.h"
 
 // The one place where images become values: between a hit and its vertex.
 
@@ -34,13 +34,16 @@ CASTRAY_INLINE MapInputs map_inputs(const TriangleTable& table, const TrianglePl
 }
 
 /// Multiplies `value`, by ParameterSlot, by what those maps of a material say whose slots are in `wanted`.
+/// `seen`: what the pixels see, or null.
 CASTRAY_INLINE void apply_maps(const KernelDetail& d, uint32_t wanted, const MapInputs& in, Mask here,
-                               Float* value) {
+                               const Footprint* seen, Float* value) {
   for (uint32_t i = 0; i < d.count; ++i) {
     const KernelMap& map = d.maps[i];
     const Mask valid = here & (map.is_colors ? in.has_color : in.has_uv);
     if (!(wanted >> map.slot & 1) || none(valid)) continue;
-    const Vec factor = map.is_colors ? in.color : map_value(map, in.u, in.v);
+    const Vec factor = map.is_colors          ? in.color
+                       : map.by_pixel && seen ? footprint_value(map, in.u, in.v, *seen, valid)
+                                              : map_value(map, in.u, in.v);
     Float* slot = value + map.slot;
     if (map.count == 3) {
       slot[0] = select(valid, slot[0] * factor.x, slot[0]);
@@ -65,16 +68,18 @@ CASTRAY_INLINE void for_each_detail(const MaterialTables& tables, Uint material,
   }
 }
 
-/// Replaces a material's own values, the vertex_floats from `value` on, by those of the points in its lanes.
+/// Replaces a material's own values, the vertex_floats from `value` on, by those of the points in its lanes;
+/// where its maps filter, by the means over what the pixels see, `seen`, unless that is null.
 inline __attribute__((noinline)) void resolve_values(const MaterialTables& tables,
                                                      const TriangleTable& triangles, const Uint& material,
-                                                     const TrianglePlace& at, Float* value) {
+                                                     const TrianglePlace& at, const Footprint* seen,
+                                                     Float* value) {
   if (none(~(gather(tables.materials, &KernelMaterial::detail, material) == Uint(0u)))) return;
   const MapInputs in = map_inputs(triangles, at);
   for_each_detail(tables, material, Mask(true), [&](const KernelDetail& d, Mask here) {
     Float own[parameter_floats];
     for (int k = 0; k < parameter_floats; ++k) own[k] = Float(d.value[k]);
-    apply_maps(d, ~0u, in, here, own);
+    apply_maps(d, ~0u, in, here, seen, own);
     own[slot_alpha] = max(own[slot_alpha], Float(d.least_alpha));
     finish_values(all_models, d, tables.albedos, own);
     for (int k = 0; k < vertex_floats; ++k) value[k] = select(here, own[k], value[k]);
@@ -90,7 +95,7 @@ inline __attribute__((noinline)) void resolve_emission(const MaterialTables& tab
     Float own[parameter_floats];
     for (int k = 0; k < 3; ++k) own[slot_emission + k] = Float(d.value[slot_emission + k]);
     own[slot_coverage] = Float(d.value[slot_coverage]);
-    apply_maps(d, 1u << slot_emission | 1u << slot_coverage, in, here, own);
+    apply_maps(d, 1u << slot_emission | 1u << slot_coverage, in, here, nullptr, own);
     const Vec whole{own[slot_emission], own[slot_emission + 1], own[slot_emission + 2]};
     emission = select(here, whole * own[slot_coverage], emission);
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/triangle_table_lanes.h"
+#include "materials/kernel_material.h"
 
 // Textures and smooth normals, interpolated over a triangle.
 

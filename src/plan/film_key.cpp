@@ -56,6 +56,7 @@ void add_map(Hash& hash, const TextureMap& map) {
     hash.add(v);
   hash.add(map.clamp);
   hash.add(map.channel);
+  if (map.filter != TextureFilter::none) hash.add(map.filter);
 }
 
 void add_optics(Hash& hash, const Camera& camera) {

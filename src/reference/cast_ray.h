@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "castray/render_options.h"
 #include "lights/area_lights.h"
@@ -52,6 +54,7 @@ class CastRay {
         accel_(accel),
         textbook_(textbook),
         options_(options),
+        filters_(std::ranges::any_of(parts.scene.materials, &Material::filters_maps)),
         segments_{options.epsilon},
         mis_(uses_mis(options.mis, parts.scene, 1)) {}
 
@@ -63,6 +66,7 @@ class CastRay {
     path.light_u = {T(u[2]), T(u[3])};
     const auto lens = [&] { return draw(path, PathBlocks::lens); };
     const CameraRay ray = camera_sample(scene_.camera, x, y, width, height, options_.jitter, u, lens);
+    if (filters_) path.pixel = pixel_view<T>(scene_.camera, x, y, width, height, options_.jitter, u, lens);
     const Vec3<T> radiance = cast_ray({Vec3<T>(ray.origin), Vec3<T>(normalize(ray.direction))}, path,
                                       textbook_.camera_sees_emitters() ? Arrival::whole() : Arrival::none());
     rays += path.rays;
@@ -78,8 +82,9 @@ class CastRay {
     Vec3<T> throughput{1};  ///< of radiance without the scale of refractions: for roulette only
     Point2<T> light_u{};    ///< for the light point of this vertex
     std::uint64_t rays = 0;
-    HitFilter<T> there{};  ///< which hits count
-    Media media{};         ///< that the path's last segment is in
+    HitFilter<T> there{};                 ///< which hits count
+    Media media{};                        ///< that the path's last segment is in
+    std::optional<PixelView<T>> pixel{};  ///< of the camera's ray, where maps filter
   };
 
   /// How a ray was sampled, which decides how much of the emission that it hits counts.
@@ -100,7 +105,7 @@ class CastRay {
     ++path.rays;
     const Hit<T> hit = accel_.closest(ray, path.there);
     if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless);
-    Surface<T> x = surfaces_.at(hit, ray);
+    Surface<T> x = surfaces_.at(hit, ray, path.vertex == 0 ? path.pixel : std::nullopt);
     segments_.place(x, hit, ray);
     if (transmits(x) && dot(x.normal, x.to_viewer) < 0) path.media.find(x.material);
     const Vec3<T> transmittance = kept(path.media, hit.t);
@@ -245,6 +250,7 @@ class CastRay {
   const Accel& accel_;
   const Textbook<T>& textbook_;
   const RenderOptions& options_;
+  bool filters_;
   Segments<T> segments_;
   bool mis_;
 };

@@ -46,14 +46,17 @@ class Surfaces {
     }
   }
 
-  /// The surface that `ray`, of unit direction, meets at `hit`.
-  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray) const {
-    return hit.instance == Scene::no_index ? at(hit, ray, InPlace()) : at(hit, ray, places_[hit.instance]);
+  /// The surface that `ray`, of unit direction, meets at `hit`. `pixel`: what the pixel of a camera's ray
+  /// sees.
+  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, const std::optional<PixelView<T>>& pixel = {}) const {
+    return hit.instance == Scene::no_index ? at(hit, ray, InPlace(), pixel)
+                                           : at(hit, ray, places_[hit.instance], pixel);
   }
 
  private:
   template <class Placement>
-  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, const Placement& placement) const {
+  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, const Placement& placement,
+                const std::optional<PixelView<T>>& pixel) const {
     const Index3& t = scene_.triangles[hit.triangle];
     const TrianglePoint<T> point =
         placement.point(point_on_triangle(Vec3<T>(scene_.positions[t[0]]), Vec3<T>(scene_.positions[t[1]]),
@@ -77,11 +80,35 @@ class Surfaces {
                        place,
                        material};
     if (m.has_maps() || m.vertex_colors) {
-      const SurfaceValues<T> values = surface_values(scene_, m, place);
+      const auto seen = pixel ? footprint_at(*pixel, point.p, normal, place, placement) : std::nullopt;
+      const SurfaceValues<T> values = surface_values(scene_, m, place, seen);
       surface.bsdf = materials_.at(material, values);
       surface.emission = values.color(slot_emission);
     }
     return surface;
+  }
+
+  /// What a pixel sees of the plane of a triangle with this normal, around the point p.
+  template <class Placement>
+  std::optional<Footprint<T>> footprint_at(const PixelView<T>& pixel, const Vec3<T>& p, const Vec3<T>& normal,
+                                           const TrianglePlace<T>& place, const Placement& placement) const {
+    const auto uv = uv_at(scene_, place);
+    const auto move = uv_derivatives<T>(scene_, place.triangle, placement);
+    const T towards = dot(normal, pixel.d), t = dot(normal, p - pixel.o) / towards;
+    if (!uv || !move || !(t > 0) || !std::isfinite(t)) return {};
+    const Vec3<T> across_u = cross(move->dv, normal), across_v = cross(normal, move->du);
+    const T scale = dot(move->du, across_u);
+    const auto uv_of = [&](const Vec3<T>& w) {
+      return std::array<T, 2>{dot(across_u, w) / scale, dot(across_v, w) / scale};
+    };
+    const auto change = [&](const Vec3<T>& o, const Vec3<T>& d) {
+      const Vec3<T> w = o + d * t;
+      return uv_of(w - pixel.d * (dot(normal, w) / towards));
+    };
+    const auto [u, v] = uv_of(pixel.o + pixel.d * t - p);
+    return Footprint<T>{{(*uv)[0] + u, (*uv)[1] + v},        change(pixel.o_right, pixel.d_right),
+                        change(pixel.o_down, pixel.d_down),  dot(normal, pixel.d_right) / towards,
+                        dot(normal, pixel.d_down) / towards, pixel.sample};
   }
 
   /// The interpolated vertex normal, on the geometric normal's side; the geometric one where there is none or

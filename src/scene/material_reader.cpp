@@ -134,6 +134,7 @@ class MaterialReader {
       map.gain = static_cast<float>(read_number(*gain, "\"gain\""));
     if (const JsonNode* channel = reader.find("channel"))
       map.channel = static_cast<Channel>(choose(*channel, "channel", channel_names()));
+    if (const JsonNode* filter = reader.find("filter")) map.filter = read_filter(key, *filter);
     ColorSpace space = key.kind == Kind::color ? ColorSpace::srgb : ColorSpace::linear;
     if (const JsonNode* named = reader.find("color_space"))
       space = choose(*named, "colour space", {"srgb", "linear"}) == 0 ? ColorSpace::srgb : ColorSpace::linear;
@@ -144,6 +145,15 @@ class MaterialReader {
     if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));
     map.texture = builder_.add_texture(path, space, meaning_of(key));
     material_.map(*key.parameter) = map;
+  }
+
+  static TextureFilter read_filter(const MaterialKey& key, const JsonNode& node) {
+    const auto filter = static_cast<TextureFilter>(choose(node, "filter", filter_names()));
+    if (filter != TextureFilter::none && !is_reflectance(key))
+      throw InputError(node.key_place, fmt::format("\"{}\" cannot be filtered: only colours of what is "
+                                                   "reflected or transmitted; leave \"filter\" out",
+                                                   key.name));
+    return filter;
   }
 
   static TextureMeaning meaning_of(const MaterialKey& key) {
@@ -177,7 +187,7 @@ Material read_material(const JsonNode& node, const std::filesystem::path& file, 
 
 const std::vector<std::string_view>& map_keys() {
   static const std::vector<std::string_view> keys{"image",   "factor",      "scale", "offset", "clamp",
-                                                  "channel", "color_space", "base",  "gain"};
+                                                  "channel", "color_space", "base",  "gain",   "filter"};
   return keys;
 }
 

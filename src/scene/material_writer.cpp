@@ -47,6 +47,7 @@ Json map_json(const MaterialKey& key, const Material& material, const Scene& sce
     json["color_space"] = space == ColorSpace::srgb ? "srgb" : "linear";
   if (map.base != none.base) json["base"] = shortest(map.base);
   if (map.gain != none.gain) json["gain"] = shortest(map.gain);
+  if (map.filter != none.filter) json["filter"] = filter_names()[static_cast<std::size_t>(map.filter)];
   return json;
 }
 

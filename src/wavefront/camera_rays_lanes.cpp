@@ -65,7 +65,18 @@ CASTRAY_INLINE void move_at_edges(const Context& c, const TileResult& pixels, in
   for (int d = 0; d < 2; ++d) place[d] = select(mask_of_bits(edges), n.u[d], place[d]);
 }
 
-void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
+/// Of the pixels (x,y) through one point of the lens; the samples are at (px,py).
+CASTRAY_INLINE PixelView view_of(const KernelCamera& camera, Float x, Float y, Float px, Float py,
+                                 const Numbers<2>& lens) {
+  const auto ray = [&](float right, float down) {
+    return camera_ray(camera, x + Float(right), y + Float(down), lens.u[0], lens.u[1]);
+  };
+  const CameraRay middle = ray(0.5f, 0.5f), right = ray(1.5f, 0.5f), down = ray(0.5f, 1.5f);
+  return {middle.o, middle.d, right.o - middle.o, right.d - middle.d, down.o - middle.o, down.d - middle.d,
+          px - x,   py - y};
+}
+
+void camera_rays(const Context& c, const TileResult& pixels, Paths& paths, PixelViews* views) {
   const KernelCamera& camera = c.scene.camera;
   const uint32_t index = index_of(c.job.sample);
   paths.count = c.job.tiles * tile_pixels;
@@ -80,6 +91,7 @@ void camera_rays(const Context& c, const TileResult& pixels, Paths& paths) {
     const Numbers<2> lens = camera.has_lens ? draw<2>(c.options.sobol, {key, Uint(index)}, PathBlocks::lens)
                                             : Numbers<2>{Float(0.f), Float(0.f)};
     const CameraRay ray = camera_ray(camera, px, py, lens.u[0], lens.u[1]);
+    if (views) store(*views, i, view_of(camera, to_float(x), to_float(y), px, py, lens));
     store(paths.o, i, ray.o);
     store(paths.d, i, ray.d);
     store(paths.throughput, i, Vec{Float(1.f), Float(1.f), Float(1.f)});

@@ -27,7 +27,8 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   s.ends.fill();
   s.radiance.clear();
   place_pixels(c, result);
-  camera_rays(c, result, s.paths);
+  PixelViews* const views = scene.filtered ? &s.views : nullptr;
+  camera_rays(c, result, s.paths, views);
   const FirstHits& first = scene.first_hits;
   if (first.known)
     recall_first_hits(first, result, s.paths.count, s.hits);
@@ -35,7 +36,7 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
     closest<Geometry>(c, s.paths, true, s.hits);
   if (first.t && !first.known) return keep_first_hits(first, result, s.paths.count, s.hits);
   absorb<Geometry>(c, s.hits, false, s.paths);
-  surfaces<Geometry, features, true>(c, s.paths, s.hits, true, s.camera, s.radiance);
+  surfaces<Geometry, features, true>(c, s.paths, s.hits, true, s.camera, s.radiance, false, views);
   if (result.emitted[0]) copy_radiance(s.radiance, job.tiles * tile_pixels, result.emitted);
   keep_direct(c, s);
   if (options.suffixes > 0 && may_have_edges(options, 2))

@@ -11,6 +11,7 @@ namespace castray::CASTRAY_ISA {
 struct Scratch {
   FarEnds ends;
   Paths paths;
+  PixelViews views;
   Hits hits;
   Vertices camera, vertices, glossy;
   Chains chains;

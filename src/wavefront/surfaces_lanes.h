@@ -40,13 +40,28 @@ CASTRAY_INLINE Vec escaped_radiance(const EnvironmentTable& environment, const V
   return select(sampled, sky.radiance * found_weight(arrival, sky.density), sky.radiance);
 }
 
+/// What pixels see of the planes around these points of triangles.
+template <class Placement>
+CASTRAY_INLINE Footprint footprint_at(const TriangleTable& triangles, const Placement& placement,
+                                      const TrianglePlace& at, const SurfacePoint& x,
+                                      const PixelView& pixel) {
+  const UvDerivatives move = uv_derivatives(triangles, placement, at.triangle);
+  const MapInputs in = map_inputs(triangles, at);
+  const Vec across_u = cross(move.dv, x.normal), across_v = cross(x.normal, move.du);
+  const Float inverse = Float(1.f) / dot(move.du, across_u);
+  Footprint seen = footprint_of(pixel, x.p, x.normal, in.u, in.v, across_u * inverse, across_v * inverse);
+  seen.valid = seen.valid & move.valid;
+  return seen;
+}
+
 /// Path vertices at the hits. Rays that miss add the environment's radiance and end. `see_emission`: hits
 /// add emission. With `keep_misses` every path keeps its entry: a miss is a black vertex with normal
 /// (0,0,0). `from_light`: whatever side of the shading normal a path comes from, its vertex has that normal
-/// (see light_normals_lanes.h).
+/// (see light_normals_lanes.h). `views`: those of the pixels whose camera rays these are, or null.
 template <class Geometry, uint32_t features, bool keep_misses>
 CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hits, bool see_emission,
-                            Vertices& out, Radiance& radiance, bool from_light = false) {
+                            Vertices& out, Radiance& radiance, bool from_light = false,
+                            const PixelViews* views = nullptr) {
   const KernelScene& scene = c.scene;
   const Geometry geometry = geometry_of<Geometry>(c);
   out.count = 0;
@@ -66,8 +81,12 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     const Vec facing = select(front, x.normal, -x.normal);
     const TrianglePlace place{primitive, b1, b2};
     Parameters<features> parameters = gather_parameters<features>(scene, material);
-    if constexpr (features & feature_detail)
-      resolve_values(scene, scene.geometry.tree.triangles, material, place, parameters.value);
+    if constexpr (features & feature_detail) {
+      const TriangleTable& triangles = scene.geometry.tree.triangles;
+      Footprint seen;
+      if (views) seen = footprint_at(triangles, geometry.placement(at), place, x, load(*views, i));
+      resolve_values(scene, triangles, material, place, views ? &seen : nullptr, parameters.value);
+    }
     const Float arrival = load(paths.arrival + i);
     if (see_emission) {
       const Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);

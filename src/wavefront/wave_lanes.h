@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/ray_batches.h"
+#include "materials/footprint_lanes.h"
 #include "materials/parameters_lanes.h"
 #include "simd/array_rows_lanes.h"
 #include "simd/random_lanes.h"
@@ -42,6 +43,26 @@ struct Paths {
   alignas(64) UintArray media;     ///< see absorption_lanes.h; only where a material absorbs
   PathNames names;
 };
+
+/// PixelView of the camera rays' pixels; only where a map filters.
+struct PixelViews {
+  VecArray<capacity> o, d, o_right, d_right, o_down, d_down;
+  alignas(64) FloatArray sample_x, sample_y;
+};
+CASTRAY_INLINE PixelView load(const PixelViews& views, int i) {
+  return {load(views.o, i),      load(views.d, i),      load(views.o_right, i),   load(views.d_right, i),
+          load(views.o_down, i), load(views.d_down, i), load(views.sample_x + i), load(views.sample_y + i)};
+}
+CASTRAY_INLINE void store(PixelViews& views, int i, const PixelView& view) {
+  store(views.o, i, view.o);
+  store(views.d, i, view.d);
+  store(views.o_right, i, view.o_right);
+  store(views.d_right, i, view.d_right);
+  store(views.o_down, i, view.o_down);
+  store(views.d_down, i, view.d_down);
+  store(views.sample_x + i, view.sample_x);
+  store(views.sample_y + i, view.sample_y);
+}
 
 /// Values of t_max: of rays, and of segments.
 struct FarEnds {

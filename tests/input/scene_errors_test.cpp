@@ -235,7 +235,7 @@ const std::vector<Case> cases = {
     in_line("an index of a lamp",
             R"(  "materials": { "a": { "type": "diffuse", "ke": { "eta": 1, "k": 2 } } },)",
             "s.json:2:52: unknown key 'eta' in \"ke\"; known: image, factor, scale, offset, clamp, channel, "
-            "color_space, base, gain"),
+            "color_space, base, gain, filter"),
     in_line(
         "glass that lets nothing pass",
         R"(  "materials": { "a": { "type": "dielectric", "absorption": { "color": [0,1,1], "distance": 2 } } },)",
@@ -281,6 +281,20 @@ const std::vector<Case> cases = {
         "a factor of a normal map",
         R"(  "materials": { "a": { "type": "diffuse", "normal_map": { "image": "s.json", "factor": 2 } } },)",
         "s.json:2:79: \"normal_map\" has no factor; use \"gain\""),
+    in_line(
+        "unknown filter",
+        R"(  "materials": { "a": { "type": "diffuse", "kd": { "image": "s.json", "filter": "pixels" } } },)",
+        "s.json:2:81: unknown filter 'pixels'; did you mean 'pixel'?"),
+    in_line(
+        "a filter of a number",
+        R"(  "materials": { "a": { "type": "conductor", "alpha": { "image": "s.json", "filter": "pixel" } } },)",
+        "s.json:2:76: \"alpha\" cannot be filtered: only colours of what is reflected or transmitted; leave "
+        "\"filter\" out"),
+    in_line(
+        "a filter of a lamp",
+        R"(  "materials": { "a": { "type": "diffuse", "ke": { "image": "s.json", "filter": "pixel" } } },)",
+        "s.json:2:71: \"ke\" cannot be filtered: only colours of what is reflected or transmitted; leave "
+        "\"filter\" out"),
     in_line("an index of refraction cannot be an image",
             R"(  "materials": { "a": { "type": "dielectric", "ior": { "image": "s.json" } } },)",
             "s.json:2:54: \"ior\" must be a number, not an object"),

@@ -151,7 +151,7 @@ TEST_CASE("parameters of materials may be images") {
   write_image(folder / "t.png", Image(2, 2));
   std::ofstream(folder / "s.json") << R"({ "materials": { "m": { "type": "principled",
     "kd": { "image": "t.png", "factor": [0.5, 0.25, 1], "scale": [2, 3], "offset": [0.5, 0], "clamp": true },
-    "ks": { "image": "t.png" }, "roughness": { "image": "t.png", "channel": "green", "factor": 0.5 },
+    "ks": { "image": "t.png", "filter": "pixel" }, "roughness": { "image": "t.png", "channel": "green", "factor": 0.5 },
     "metallic": 0.5, "normal_map": { "image": "t.png", "gain": 0.5 },
     "coverage": { "image": "t.png", "base": 1, "gain": -1 } } },
     "meshes": [ { "obj": "t.obj", "material": "m" } ] })";
@@ -168,6 +168,11 @@ TEST_CASE("parameters of materials may be images") {
   CHECK(kd.scale == std::array<float, 2>{2, 3});
   CHECK(kd.offset == std::array<float, 2>{0.5f, 0});
   CHECK(kd.clamp);
+  CHECK(kd.filter == TextureFilter::none);
+  CHECK(m.map(SurfaceParameter::ks).filter == TextureFilter::pixel);
+  const auto written = material_json(m, scene, [](int) { return std::string("t.png"); });
+  CHECK(written["ks"].dump() == R"({"image":"t.png","filter":"pixel"})");
+  CHECK_FALSE(written["kd"].contains("filter"));
   const TextureMap& roughness = m.map(SurfaceParameter::roughness);
   CHECK(roughness.channel == Channel::green);
   CHECK(scene.textures[static_cast<std::size_t>(roughness.texture)].color_space == ColorSpace::linear);
