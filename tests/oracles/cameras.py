@@ -9,9 +9,9 @@ import sys
 
 import details
 import mitsuba as mi
-from details import ROOT, SIDE
+from suite import ROOT, SIDE, Suite
 
-details.FOLDER = FOLDER = ROOT / "tests" / "golden" / "cameras"
+FOLDER = ROOT / "tests" / "golden" / "cameras"
 POSITION, LOOK_AT = [278, 273, -800], [278, 273, 0]
 BOX = json.loads("".join(line for line in open(ROOT / "scenes" / "cornell_box.json") if not line.startswith("//")))
 
@@ -33,14 +33,13 @@ def write_scene(name, keys):
     (FOLDER / f"{name}.json").write_text(json.dumps(scene, indent=1) + "\n")
 
 
-def mitsuba_scene(name):
+def mitsuba_scene(name, view):
     sensor = dict(CASES[name][1])
-    view = mi.ScalarTransform4f().look_at(origin=POSITION, target=LOOK_AT, up=[0, 1, 0])
+    to_world = mi.ScalarTransform4f().look_at(origin=POSITION, target=LOOK_AT, up=[0, 1, 0])
     if sensor["type"] == "orthographic":
-        view = view.scale([250, 250, 1])
-    film = {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}}
+        to_world = to_world.scale([250, 250, 1])
     scene = {"type": "scene", "integrator": {"type": "path", "max_depth": -1},
-             "sensor": {**sensor, "to_world": view, "film": film, "sampler": {"type": details.SAMPLER}}}
+             "sensor": view.sensor(**sensor, to_world=to_world)}
     for i, mesh in enumerate(BOX["meshes"]):
         material = BOX["materials"][mesh["material"]]
         shape = {"type": "obj", "filename": str(ROOT / "scenes" / mesh["obj"]), "face_normals": True,
@@ -51,7 +50,7 @@ def mitsuba_scene(name):
     return mi.load_dict(scene)
 
 
-details.CASES, details.mitsuba_scene = CASES, mitsuba_scene
+SUITE = Suite(FOLDER, list(CASES), mitsuba_scene)
 
 
 def write(variant):
@@ -59,11 +58,11 @@ def write(variant):
     FOLDER.mkdir(parents=True, exist_ok=True)
     for name, (keys, _) in CASES.items():
         write_scene(name, keys)
-        details.write_estimate(name)
+        SUITE.write_estimate(name)
 
 
 if __name__ == "__main__":
     if sys.argv[1] == "--write":
         write(*(sys.argv[2:] or ["scalar_rgb"]))
     else:
-        sys.exit(0 if details.check_all(sys.argv[1]) else 1)
+        sys.exit(0 if SUITE.check_all(sys.argv[1]) else 1)

@@ -7,20 +7,14 @@ details.py --write [VARIANT [NAME...]] makes the folder, or these scenes of it; 
 """
 import json
 import math
-import pathlib
-import subprocess
 import sys
-import tempfile
 
 import mitsuba as mi
 import numpy as np
 from PIL import Image
+from suite import ROOT, SIDE, Suite
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FOLDER = ROOT / "tests" / "golden" / "details"
-SIDE, BLOCK = 64, 4  # pixels
-SAMPLER = "independent"
-FALSE_ALARM = 1e-3  # of a whole run
 SKY, LAMP = [0.3, 0.35, 0.4], [4.0, 3.5, 3.0]
 ABSORPTION = [0.2, 0.6, 1.0]  # of the glass, which is a block instead of a card
 
@@ -170,7 +164,7 @@ def diffuse(reflectance, factor):
     return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": reflectance}}
 
 
-def mitsuba_scene(name):
+def mitsuba_scene(name, view):
     t = mi.ScalarTransform4f
 
     def shape(bsdf, to_world, filename=FOLDER / "card.obj", **more):
@@ -190,10 +184,8 @@ def mitsuba_scene(name):
     return mi.load_dict({
         "type": "scene",
         "integrator": {"type": "volpathmis" if name == "glass" else "path", "max_depth": -1},
-        "sensor": {"type": "perspective", "fov": 35, "fov_axis": "y",
-                   "to_world": t().look_at(origin=[0, 1.5, 4.5], target=[0, 0.8, 0], up=[0, 1, 0]),
-                   "film": {"type": "hdrfilm", "width": SIDE, "height": SIDE, "rfilter": {"type": "box"}},
-                   "sampler": {"type": SAMPLER}},
+        "sensor": view.sensor(type="perspective", fov=35, fov_axis="y",
+                              to_world=t().look_at(origin=[0, 1.5, 4.5], target=[0, 0.8, 0], up=[0, 1, 0])),
         "sky": {"type": "constant", "radiance": rgb(SKY)},
         **card(),
         "floor": shape(plain(floor(name)), t().rotate([1, 0, 0], -90).scale(3)),
@@ -201,82 +193,7 @@ def mitsuba_scene(name):
                       emitter={"type": "area", "radiance": rgb(LAMP)})})
 
 
-def block_means(image):
-    n = SIDE // BLOCK
-    return np.asarray(image, np.float64)[..., :3].reshape(n, BLOCK, n, BLOCK, 3).mean((1, 3))
-
-
-class Estimate:
-    """Mean of independent renders' blocks, and its variance."""
-
-    def __init__(self, renders):
-        renders = np.array(renders)
-        self.mean = renders.mean(0)
-        self.variance = renders.var(0, ddof=1) / len(renders)
-
-
-def by_mitsuba(name, spp, seeds, first_seed):
-    scene = mitsuba_scene(name)
-    return Estimate([block_means(mi.render(scene, spp=spp, seed=first_seed + s)) for s in range(seeds)])
-
-
-def by_castray(castray, name, flags, spp, seeds):
-    with tempfile.TemporaryDirectory() as folder:
-        output = pathlib.Path(folder) / "image.pfm"
-        renders = []
-        for seed in range(seeds):
-            subprocess.run([castray, "render", FOLDER / f"{name}.json", "-q", "--spp", str(spp), "--seed", str(seed + 1),
-                            "-o", output, *flags], check=True)
-            renders.append(block_means(read_pfm(output)))
-        return Estimate(renders)
-
-
-def read_pfm(path):
-    with open(path, "rb") as file:
-        assert file.readline() == b"PF\n"
-        width, height = map(int, file.readline().split())
-        assert float(file.readline()) < 0
-        return np.frombuffer(file.read(), "<f4").reshape(height, width, 3)[::-1]
-
-
-def write_pfm(path, image):
-    with open(path, "wb") as file:
-        file.write(f"PF\n{image.shape[1]} {image.shape[0]}\n-1.0\n".encode())
-        file.write(image[::-1].astype("<f4").tobytes())
-
-
-def stored(name):
-    estimate = Estimate.__new__(Estimate)
-    estimate.mean, estimate.variance = (read_pfm(FOLDER / f"{name}_{what}.pfm") for what in ("mean", "variance"))
-    return estimate
-
-
-def check(title, a, b, tests):
-    """Every block; 32 renders or more on each side, so that scores are normal but for their tails."""
-    variance = a.variance + b.variance
-    noisy = variance > 0
-    z = np.abs(a.mean - b.mean)[noisy] / np.sqrt(variance[noisy])
-    if not np.allclose(a.mean[~noisy], b.mean[~noisy]):
-        print(f"{title}: blocks without noise differ")
-        return False
-    limit = math.sqrt(2) * inverse_erfc(FALSE_ALARM / (tests * z.size))
-    limit *= 1 + limit**2 / (4 * 31)  # Student's t with 31 degrees of freedom
-    print(f"{title}: largest z {z.max():.2f} (limit {limit:.2f}), rms {math.sqrt((z**2).mean()):.3f}")
-    return z.max() < limit
-
-
-def inverse_erfc(p):
-    low, high = 0.0, 10.0
-    for _ in range(80):
-        middle = (low + high) / 2
-        low, high = (middle, high) if math.erfc(middle) > p else (low, middle)
-    return low
-
-
-def write_estimate(name):
-    estimate = by_mitsuba(name, spp=256, seeds=32, first_seed=1000)
-    write_pfm(FOLDER / f"{name}_mean.pfm", estimate.mean)
-    write_pfm(FOLDER / f"{name}_variance.pfm", estimate.variance)
+SUITE = Suite(FOLDER, list(CASES), mitsuba_scene)
 
 
 def write(variant="scalar_rgb", *names):
@@ -286,41 +203,11 @@ def write(variant="scalar_rgb", *names):
     write_images()
     for name in names or CASES:
         write_scene(name)
-        write_estimate(name)
-
-
-def check_all(castray):
-    mi.set_variant("scalar_rgb")
-    ways = ways_of(castray)
-    scenes = {name: [s for s in (name, f"{name}_mtl") if (FOLDER / f"{s}.json").exists()] for name in CASES}
-    tests = len(CASES) + len(ways) * sum(map(len, scenes.values()))
-    good = True
-    for name in CASES:
-        anew = by_mitsuba(name, spp=16, seeds=32, first_seed=1)
-        good &= check(f"{name}, as stored", stored(name), anew, tests)
-        for scene in scenes[name]:
-            for way, flags in ways.items():
-                good &= check(f"{scene}, {way}", by_castray(castray, scene, flags, spp=16, seeds=32), anew, tests)
-    return good
-
-
-def ways_of(castray):
-    """Flags, by what they ask for; without --accel small scenes are in a list, but those with images on surfaces in a tree."""
-    reuse = {"shared": ["--reuse", "8x8:64"], "plain": ["--reuse", "off"]}
-    sets = [isa for isa in ("scalar", "sse4", "avx2", "avx512") if runs(castray, isa)]
-    built_of = {isa: ["--isa", isa] for isa in sets} | {"tree": ["--accel", "bvh"]}
-    return {f"{built}, {way}": more + flags for built, more in built_of.items() for way, flags in reuse.items()}
-
-
-def runs(castray, isa):
-    """Whether castray has this instruction set, and the processor too."""
-    scene = FOLDER / f"{next(iter(CASES))}.json"
-    command = [castray, "render", scene, "-q", "--spp", "1", "--size", "8x8", "--isa", isa, "-o", "-"]
-    return subprocess.run(command, capture_output=True).returncode == 0
+        SUITE.write_estimate(name)
 
 
 if __name__ == "__main__":
     if sys.argv[1] == "--write":
         write(*sys.argv[2:])
     else:
-        sys.exit(0 if check_all(sys.argv[1]) else 1)
+        sys.exit(0 if SUITE.check_all(sys.argv[1]) else 1)

@@ -12,9 +12,9 @@ import sys
 import tempfile
 
 import cameras
-import details
 import mitsuba as mi
 import numpy as np
+from suite import BLOCK, ROOT, SIDE, View
 
 SPP, SEEDS = 16, 24
 # Of Student's t with 46 degrees of freedom: 1e-7 two-sided, 1e-3 for the 5632 values of a run.
@@ -25,8 +25,8 @@ AOVS = "albedo:albedo,N:sh_normal,P:position,depth:depth,id:shape_index"
 
 
 def block_means(channels):
-    n = details.SIDE // details.BLOCK
-    return np.moveaxis(np.asarray(channels, np.float64), -1, 0).reshape(-1, n, details.BLOCK, n, details.BLOCK).mean((2, 4))
+    n = SIDE // BLOCK
+    return np.moveaxis(np.asarray(channels, np.float64), -1, 0).reshape(-1, n, BLOCK, n, BLOCK).mean((2, 4))
 
 
 def by_mitsuba(scene, forward, seed):
@@ -41,7 +41,7 @@ def by_castray(castray, name, ids, seed):
     """And the share of each block that is covered."""
     with tempfile.TemporaryDirectory() as folder:
         output = str(pathlib.Path(folder) / "image.exr")
-        subprocess.run([castray, "render", details.FOLDER / f"{name}.json", "-q", "--spp", str(SPP), "--seed", str(seed),
+        subprocess.run([castray, "render", cameras.FOLDER / f"{name}.json", "-q", "--spp", str(SPP), "--seed", str(seed),
                         "--passes", "albedo,normal,position,depth,object", "-o", output], check=True)
         bitmap = mi.Bitmap(output)
     channels = {field.name: np.array(bitmap)[..., i] for i, field in enumerate(bitmap.struct_())}
@@ -59,20 +59,20 @@ def object_ids(castray, name, scene):
     """Mitsuba's index of each object, by castray's id of it as a float."""
     with tempfile.TemporaryDirectory() as folder:
         output = str(pathlib.Path(folder) / "image.exr")
-        subprocess.run([castray, "render", details.FOLDER / f"{name}.json", "-q", "--spp", "1", "--size", "4x4",
+        subprocess.run([castray, "render", cameras.FOLDER / f"{name}.json", "-q", "--spp", "1", "--size", "4x4",
                         "--passes", "object", "-o", output], check=True)
         manifest = json.loads(mi.Bitmap(output).metadata()["cryptomatte/3ae39a5/manifest"])
     as_float = lambda digits: float(np.array([int(digits, 16)], np.uint32).view(np.float32)[0])
     ids = {}
     for i, shape in enumerate(scene.shapes(), start=1):
-        file = details.ROOT / "scenes" / cameras.BOX["meshes"][int(shape.id().removeprefix("mesh"))]["obj"]
+        file = ROOT / "scenes" / cameras.BOX["meshes"][int(shape.id().removeprefix("mesh"))]["obj"]
         names = [line.split()[1] for line in open(file) if line.startswith(("o ", "g "))] or [file.stem]
         ids.update({as_float(manifest[name]): i for name in names})
     return ids
 
 
 def check(castray, name):
-    scene = cameras.mitsuba_scene(name)
+    scene = cameras.mitsuba_scene(name, View())
     forward = np.subtract(cameras.LOOK_AT, cameras.POSITION) / np.linalg.norm(np.subtract(cameras.LOOK_AT, cameras.POSITION))
     ids = object_ids(castray, name, scene)
     ours = np.array([by_castray(castray, name, ids, seed) for seed in range(1, SEEDS + 1)])
