@@ -72,6 +72,45 @@ void trace(RTCScene scene, const RayArrays& rays, bool any, std::size_t first, s
   }
 }
 
+/// A scene of instances of `mesh`, which is committed first.
+Scene make_instances(RTCDevice device, RTCScene mesh, const std::vector<Transform>& places,
+                     const Options& options) {
+  Scene scene(rtcNewScene(device), rtcReleaseScene);
+  if (options.robust) rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  for (const Transform& place : places) {
+    RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, mesh);
+    float matrix[12];
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column)
+        matrix[4 * row + column] =
+            static_cast<float>(column < 3 ? place.rows[row][column] : place.translation[row]);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, matrix);
+    rtcCommitGeometry(instance);
+    rtcAttachGeometry(scene.get(), instance);
+    rtcReleaseGeometry(instance);
+  }
+  return scene;
+}
+
+/// The mesh, or all that shows it.
+struct Rival {
+  Device device;
+  Scene mesh;
+  Scene instances{nullptr, rtcReleaseScene};
+
+  Rival(int threads, const std::vector<float>& soup, const Options& options)
+      : device(make_device(threads)), mesh(make_scene(device.get(), soup, options)) {
+    if (!options.places.empty())
+      instances = make_instances(device.get(), mesh.get(), read_places(options.places), options);
+  }
+  void commit() const {
+    rtcCommitScene(mesh.get());
+    if (instances) rtcCommitScene(instances.get());
+  }
+  RTCScene scene() const { return instances ? instances.get() : mesh.get(); }
+};
+
 bool count_bytes(void* held, ssize_t bytes, bool) {
   *static_cast<std::atomic<std::int64_t>*>(held) += bytes;
   return true;
@@ -79,29 +118,26 @@ bool count_bytes(void* held, ssize_t bytes, bool) {
 
 /// Of the build alone, the copy of the mesh left out.
 BuildCost build(int threads, const std::vector<float>& soup, const Options& options) {
-  const Device device = make_device(threads);
+  const Rival rival(threads, soup, options);
   std::atomic<std::int64_t> held = 0;
-  rtcSetDeviceMemoryMonitorFunction(device.get(), count_bytes, &held);
-  const Scene scene = make_scene(device.get(), soup, options);
-  const std::int64_t before = held;
+  rtcSetDeviceMemoryMonitorFunction(rival.device.get(), count_bytes, &held);
   const BuildCost cost = timed_build([&] {
-    rtcCommitScene(scene.get());
-    return static_cast<std::size_t>(held - before);
+    rival.commit();
+    return static_cast<std::size_t>(held);
   });
-  rtcSetDeviceMemoryMonitorFunction(device.get(), nullptr, nullptr);
+  rtcSetDeviceMemoryMonitorFunction(rival.device.get(), nullptr, nullptr);
   return cost;
 }
 
 void measure(const Options& options) {
   const std::vector<float> soup = read_floats(options.mesh, 9);
   measure_build(options, soup.size() / 9, [&](int threads) { return build(threads, soup, options); });
-  const Device device = make_device(options.threads);
-  const Scene scene = make_scene(device.get(), soup, options);
-  rtcCommitScene(scene.get());
+  const Rival rival(options.threads, soup, options);
+  rival.commit();
   fmt::print("{} triangles, Embree {}, quality {}, {} threads\n", soup.size() / 9,
              options.robust ? "robust" : "fast", options.quality, options.threads);
   measure_rays(options, [&](const RayArrays& rays, bool any, std::size_t first, std::size_t last,
-                            RayResult* results) { trace(scene.get(), rays, any, first, last, results); });
+                            RayResult* results) { trace(rival.scene(), rays, any, first, last, results); });
 }
 
 int run(int argc, char** argv) {

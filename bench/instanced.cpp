@@ -109,4 +109,13 @@ Scene scene_of(const MeshView& mesh) {
   return scene;
 }
 
+Scene scene_of(const MeshView& mesh, const std::vector<Transform>& places) {
+  Scene scene = scene_of(mesh);
+  scene.shared_meshes.push_back({0, mesh.count});
+  for (const Transform& place : places)
+    scene.instances.push_back(
+        {0, {Vec3f(place.rows[0]), Vec3f(place.rows[1]), Vec3f(place.rows[2])}, Vec3f(place.translation)});
+  return scene;
+}
+
 }  // namespace castray

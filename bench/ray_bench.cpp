@@ -35,6 +35,8 @@ void measure(const RayBenchOptions& options, const std::string& file, const std:
 
 void add_ray_bench_options(CLI::App& app, RayBenchOptions& options) {
   app.add_option("mesh", options.mesh, "raw float32, 9 a triangle; castray-generate writes them")->required();
+  app.add_option("--places", options.places,
+                 "raw float32, 12 a place, rows of a 3x4 matrix: the mesh, in [-1,1], is there as instances");
   app.add_option("--rays", options.rays,
                  "raw float32: ox oy oz dx dy dz t_max; several files; none: only the build is timed");
   app.add_option("--threads", options.threads)->check(CLI::PositiveNumber)->capture_default_str();

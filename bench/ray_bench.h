@@ -11,7 +11,7 @@ namespace castray {
 
 /// What the programs that count rays per second are asked for, castray's and those of its rivals alike.
 struct RayBenchOptions {
-  std::string mesh, mode = "closest", out;
+  std::string mesh, places, mode = "closest", out;
   std::vector<std::string> rays;
   int threads = 1, repeat = 5;
 };

@@ -14,6 +14,7 @@
 #include "castray/error.h"
 #include "core/files.h"
 #include "geometry/ray_arrays.h"
+#include "scene/transform.h"
 
 namespace castray {
 
@@ -38,6 +39,21 @@ inline RayArrays read_rays(const std::filesystem::path& file) {
     rays.add({{n[i], n[i + 1], n[i + 2]}, {n[i + 3], n[i + 4], n[i + 5]}, n[i + 6]});
   }
   return rays;
+}
+
+/// A file of 12 numbers for each place of a mesh: the rows of a matrix of three rows and four columns.
+inline std::vector<Transform> read_places(const std::filesystem::path& file) {
+  const std::vector<float> n = read_floats(file, 12);
+  std::vector<Transform> places;
+  for (std::size_t i = 0; i < n.size(); i += 12) {
+    Transform& place = places.emplace_back();
+    for (int row = 0; row < 3; ++row) {
+      const float* r = n.data() + i + 4 * static_cast<std::size_t>(row);
+      place.rows[row] = {r[0], r[1], r[2]};
+      place.translation[row] = r[3];
+    }
+  }
+  return places;
 }
 
 /// What a ray hits. With any-hit, t and the triangle are 0 where something is in the way.

@@ -7,6 +7,7 @@
 
 #include "cli/tool_main.h"
 #include "geometry/wide_bvh.h"
+#include "instanced.h"
 #include "ray_bench.h"
 #include "ray_sets.h"
 #include "tracers.h"
@@ -19,10 +20,11 @@ struct Soup {
   std::vector<Vec3f> positions;
   std::vector<Index3> triangles;
 
-  explicit Soup(const std::vector<float>& floats) {
-    for (std::size_t i = 0; i < floats.size(); i += 3) {
-      positions.push_back({floats[i], floats[i + 1], floats[i + 2]});
-    }
+  /// `places`: where copies of the mesh are.
+  Soup(const std::vector<float>& floats, const std::vector<Transform>& places) {
+    for (const Transform& place : places)
+      for (std::size_t i = 0; i < floats.size(); i += 3)
+        positions.emplace_back(place.point({floats[i], floats[i + 1], floats[i + 2]}));
     for (std::uint32_t i = 0; i < positions.size(); i += 3) triangles.push_back({i, i + 1, i + 2});
   }
   MeshView view() const {
@@ -51,7 +53,9 @@ void measure(const Options& options, const MeshView& mesh) {
   const BuildQuality quality = options.build == "best" ? BuildQuality::best : BuildQuality::fast;
   std::unique_ptr<Tracer> tracer;
   measure_build(options, mesh.count, [&](int threads) {
-    tracer = make_tracer(options.accel, mesh, kernel, quality);
+    tracer = options.places.empty()
+                 ? make_tracer(options.accel, mesh, kernel, quality)
+                 : make_instance_tracer(scene_of(mesh, read_places(options.places)), kernel);
     return timed_build([&] { return tracer->build(threads).bytes; });
   });
   fmt::print("{} triangles, {}, build {}, {} threads\n", mesh.count, tracer->name(), options.build,
@@ -92,12 +96,14 @@ int run(int argc, char** argv) {
       ->delimiter(',')
       ->expected(9);
   return tool_main(app, argc, argv, [&] {
-    const Soup soup(read_floats(options.mesh, 9));
+    const std::vector<float> floats = read_floats(options.mesh, 9);
+    const std::vector<Transform> once(1);
     if (options.make.empty()) {
-      measure(options, soup.view());
+      measure(options, Soup(floats, once).view());
     } else {
       if (options.write.empty()) throw InputError("--make needs --write FILE");
-      write_ray_set(options, soup.view());
+      write_ray_set(options,
+                    Soup(floats, options.places.empty() ? once : read_places(options.places)).view());
     }
     return 0;
   });

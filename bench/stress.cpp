@@ -85,7 +85,7 @@ void test_leaks_of_instances(Table& table, const ClosedShape& closed, std::size_
   const auto rays = rays_at_seams<float>(closed, mesh, 0.5, 0, count, 4);
   for (const Transform& at : kinds_of_places())
     for (const KernelApi* kernel : available_kernels()) {
-      const auto tracer = make_instance_tracer(mesh.view(), *kernel, at);
+      const auto tracer = make_instance_tracer(as_instances(scene_of(mesh.view()), {at}), *kernel);
       tracer->build(threads);
       table.add("leaks, " + closed.name, tracer->name(), 0.5, 0, count, count_leaks(*tracer, rays));
     }

@@ -98,15 +98,12 @@ class FacetTracer : public Tracer {
   std::optional<FacetsInDouble> exact_;
 };
 
-/// The mesh as an only instance.
 class InstanceTracer : public Tracer {
  public:
-  InstanceTracer(const MeshView& mesh, const KernelApi& kernel, const Transform& place)
-      : mesh_(mesh), kernel_(kernel), place_(place) {}
+  InstanceTracer(Scene scene, const KernelApi& kernel) : scene_(std::move(scene)), kernel_(kernel) {}
 
-  std::string name() const override { return std::string("instance ") + kernel_.name; }
+  std::string name() const override { return std::string("instances ") + kernel_.name; }
   BvhStats build(int threads) override {
-    scene_ = as_instances(scene_of(mesh_), {place_});
     tree_.emplace(InstanceBvh::build(scene_, threads, BuildQuality::fast));
     return tree_->stats();
   }
@@ -121,10 +118,8 @@ class InstanceTracer : public Tracer {
   }
 
  private:
-  MeshView mesh_;
-  const KernelApi& kernel_;
-  Transform place_;
   Scene scene_;
+  const KernelApi& kernel_;
   std::optional<InstanceBvh> tree_;
 };
 
@@ -163,14 +158,14 @@ std::unique_ptr<Tracer> make_tracer(const std::string& accel, const MeshView& me
                                     BuildQuality quality) {
   if (accel == "bvh2") return std::make_unique<PlainTracer<Bvh>>(mesh);
   if (accel == "facets") return std::make_unique<FacetTracer>(mesh, kernel);
-  if (accel == "instance") return make_instance_tracer(mesh, kernel, kinds_of_places().front());
+  if (accel == "instance")
+    return make_instance_tracer(as_instances(scene_of(mesh), {kinds_of_places().front()}), kernel);
   if (accel == "list") return std::make_unique<PlainTracer<TriangleList>>(mesh);
   return std::make_unique<WideTracer>(mesh, kernel, quality);
 }
 
-std::unique_ptr<Tracer> make_instance_tracer(const MeshView& mesh, const KernelApi& kernel,
-                                             const Transform& place) {
-  return std::make_unique<InstanceTracer>(mesh, kernel, place);
+std::unique_ptr<Tracer> make_instance_tracer(Scene scene, const KernelApi& kernel) {
+  return std::make_unique<InstanceTracer>(std::move(scene), kernel);
 }
 
 std::vector<const KernelApi*> available_kernels() {

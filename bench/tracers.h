@@ -7,7 +7,6 @@
 #include "castray/render.h"
 #include "geometry/bvh.h"
 #include "geometry/ray_arrays.h"
-#include "scene/transform.h"
 #include "wavefront/kernel_api.h"
 
 namespace castray {
@@ -30,9 +29,8 @@ class Tracer {
 std::unique_ptr<Tracer> make_tracer(const std::string& accel, const MeshView& mesh, const KernelApi& kernel,
                                     BuildQuality quality = BuildQuality::fast);
 
-/// The mesh as an instance that such a transform has put where it is.
-std::unique_ptr<Tracer> make_instance_tracer(const MeshView& mesh, const KernelApi& kernel,
-                                             const Transform& place);
+/// All of a scene's triangles are in its instances.
+std::unique_ptr<Tracer> make_instance_tracer(Scene scene, const KernelApi& kernel);
 
 /// The kernels that this processor can run.
 std::vector<const KernelApi*> available_kernels();
