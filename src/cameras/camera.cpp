@@ -9,6 +9,7 @@
 #include "castray/error.h"
 #include "castray/scene.h"
 #include "core/put.h"
+#include "core/range.h"
 
 namespace castray {
 
@@ -27,11 +28,13 @@ Vec3d safe_normalize(const Vec3d& v) {
 
 Camera make_camera(const Vec3d& position, const Vec3d& look_at, const Vec3d& up, double fov,
                    const Camera& rest) {
-  if (!is_finite(position) || !is_finite(look_at) || !is_finite(up))
-    throw InputError("the camera's position, look_at and up must be finite");
-  if (!(fov > 0 && fov < 180))
-    throw InputError(
-        fmt::format("the camera's fov must be greater than 0 and less than 180 degrees, not {}", fov));
+  for (const Vec3d& point : {position, look_at, up})
+    for (int i = 0; i < 3; ++i)
+      if (!coordinate_range.contains(point[i]))
+        throw InputError(fmt::format("the camera's position, look_at and up must be {}, not {}",
+                                     coordinate_range.text(), point[i]));
+  if (!fov_range.contains(fov))
+    throw InputError(fmt::format("the camera's fov must be {} degrees, not {}", fov_range.text(), fov));
   Camera camera = rest;
   camera.position = position;
   camera.forward = safe_normalize(look_at - position);

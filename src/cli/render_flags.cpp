@@ -16,6 +16,7 @@
 #include "cli/values.h"
 #include "core/files.h"
 #include "core/nearest.h"
+#include "core/range.h"
 #include "core/text.h"
 #include "plan/option_names.h"
 #include "render/prepared_scene.h"
@@ -40,7 +41,7 @@ std::optional<double> number_or_auto(Text flag, Text text) {
   return parse_number(flag, text);
 }
 
-[[noreturn]] void refuse(Text flag, Text text, const char* expected) {
+[[noreturn]] void refuse(Text flag, Text text, const std::string& expected) {
   throw InputError("--" + flag + " '" + printable(text) + "': must be " + expected);
 }
 
@@ -92,7 +93,8 @@ void set_environment(Request r, Text flag, Text text) {
     refuse(flag, text, "R,G,B or off; an image around the scene is not read yet");
   r.scene.environment = parse_vector(flag, text);
   for (int i = 0; i < 3; ++i)
-    if ((*r.scene.environment)[i] < 0) refuse(flag, text, "at least 0 in each of R,G,B");
+    if (!radiance_range.contains((*r.scene.environment)[i]))
+      refuse(flag, text, radiance_range.text() + " in each of R,G,B");
 }
 
 constexpr const char* sampling = "Samples";

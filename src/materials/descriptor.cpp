@@ -43,7 +43,7 @@ std::vector<MaterialKey> with_common_keys(std::vector<MaterialKey> keys) {
        {.name = "ke",
         .kind = Kind::color,
         .field = &Material::ke,
-        .range = not_negative,
+        .range = radiance_range,
         .parameter = SurfaceParameter::ke,
         .slot = slot_emission,
         .text = "Emitted radiance, on the side that triangles turn counter-clockwise on [0, 0, 0]."},

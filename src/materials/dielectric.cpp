@@ -11,7 +11,7 @@ const MaterialDescriptor& dielectric_descriptor() {
       .keys = with_common_keys({{.name = "ior",
                                  .kind = MaterialKey::Kind::number,
                                  .field = &Material::ior,
-                                 .range = positive,
+                                 .range = index_range,
                                  .text = "Index of refraction inside over outside [1.5].",
                                  .brief = true},
                                 {.name = "transmittance",
@@ -24,7 +24,7 @@ const MaterialDescriptor& dielectric_descriptor() {
                                 {.name = "absorption",
                                  .kind = MaterialKey::Kind::color,
                                  .field = &Material::absorption,
-                                 .range = not_negative,
+                                 .range = {.least = 0, .greatest = float_range.greatest},
                                  .text = "Inside, over a unit of length: e^-absorption is what light keeps; "
                                          "or the colour that is left after a distance [0, 0, 0]."},
                                 roughness_key(),

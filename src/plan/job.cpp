@@ -8,7 +8,7 @@
 
 #include "castray/error.h"
 #include "core/threads.h"
-#include "materials/texture.h"
+#include "materials/brightest_emission.h"
 #include "plan/film_key.h"
 
 namespace castray {
@@ -114,26 +114,6 @@ Integrator choose_integrator(const RenderOptions& o, Fault fault) {
   }
   check_wavefront(o, fault);
   return Integrator::wavefront;
-}
-
-/// A bound of what an image multiplies a material's emission by, alpha included; at least 1.
-double greatest_factor(const Scene& scene, const TextureMap& map) {
-  if (!map.used()) return 1;
-  const float texel = std::max(greatest_value(scene.textures[static_cast<std::size_t>(map.texture)]), 1.f);
-  return std::max(1.0, map.base + std::max(map.gain, 0.f) * double{texel});
-}
-
-double brightest_emission(const Scene& scene) {
-  double brightest = max_component(scene.environment);
-  if (const EnvironmentImage& image = scene.environment_image; image.used())
-    brightest = std::max(
-        brightest,
-        image.scale * double{greatest_value(scene.textures[static_cast<std::size_t>(image.texture)])});
-  for (const Material& material : scene.materials)
-    if (material.emits())
-      brightest = std::max(
-          brightest, max_component(material.ke) * greatest_factor(scene, material.map(SurfaceParameter::ke)));
-  return brightest;
 }
 
 }  // namespace

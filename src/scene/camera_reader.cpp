@@ -21,18 +21,18 @@ double read_radius(const JsonNode& node, const ObjectReader& lens, double tan_ha
     throw InputError(node.place, "\"lens\" needs \"radius\" or \"f_number\", one of them");
   if (radius) {
     refuse(lens, "sensor_height", "\"f_number\"");
-    return read_number(*radius, "\"radius\"", positive);
+    return read_number(*radius, "\"radius\"", length_range);
   }
-  const double height = read_number(lens.require("sensor_height"), "\"sensor_height\"", positive);
-  return height / (2 * tan_half_fov) / (2 * read_number(*f_number, "\"f_number\"", positive));
+  const double height = read_number(lens.require("sensor_height"), "\"sensor_height\"", length_range);
+  return height / (2 * tan_half_fov) / (2 * read_number(*f_number, "\"f_number\"", length_range));
 }
 
 /// Without a key: what is looked at is in focus.
 double read_focus_distance(const ObjectReader& lens, const Camera& camera, const Vec3d& look_at) {
   const JsonNode *distance = lens.find("focus_distance"), *point = lens.find("focus_on");
   if (distance && point) throw InputError(point->key_place, "\"focus_distance\" or \"focus_on\", not both");
-  if (distance) return read_number(*distance, "\"focus_distance\"", positive);
-  const Vec3d in_focus = point ? read_vector(*point, "\"focus_on\"") : look_at;
+  if (distance) return read_number(*distance, "\"focus_distance\"", length_range);
+  const Vec3d in_focus = point ? read_vector(*point, "\"focus_on\"", coordinate_range) : look_at;
   const double along = dot(in_focus - camera.position, camera.forward);
   if (!(along > 0)) throw InputError(point->place, "\"focus_on\" must lie in front of the camera");
   return along;
@@ -59,14 +59,15 @@ Camera read_projection(const ObjectReader& reader) {
     camera.projection =
         static_cast<Projection>(choose(*type, "\"type\"", {"perspective", "orthographic", "panorama"}));
   if (camera.projection == Projection::orthographic)
-    camera.half_height = read_number(reader.require("height"), "\"height\"", positive) / 2;
+    camera.half_height = read_number(reader.require("height"), "\"height\"", length_range) / 2;
   else
     refuse(reader, "height", "\"type\": \"orthographic\"");
   if (camera.projection == Projection::panorama) refuse(reader, "shift", "cameras that are no panorama");
   if (camera.projection != Projection::perspective)
     for (const char* key : {"fov", "lens"}) refuse(reader, key, "\"type\": \"perspective\"");
   if (const JsonNode* shift = reader.find("shift")) {
-    const std::vector<double> numbers = read_numbers(*shift, "\"shift\"", 2);
+    const std::vector<double> numbers =
+        read_numbers(*shift, "\"shift\"", 2, {.least = -1000, .greatest = 1000});
     camera.shift_x = numbers[0], camera.shift_y = numbers[1];
   }
   return camera;
@@ -77,16 +78,16 @@ Camera read_projection(const ObjectReader& reader) {
 Camera read_camera(const JsonNode& node) {
   const ObjectReader reader(node, "\"camera\"", camera_keys);
   const Camera projection = read_projection(reader);
-  const Vec3d position = read_vector(reader.require("position"), "\"position\"");
-  const Vec3d look_at = read_vector(reader.require("look_at"), "\"look_at\"");
+  const Vec3d position = read_vector(reader.require("position"), "\"position\"", coordinate_range);
+  const Vec3d look_at = read_vector(reader.require("look_at"), "\"look_at\"", coordinate_range);
   const JsonNode* up = reader.find("up");
   const JsonNode* fov = reader.find("fov");
-  constexpr Range angle{.least = 0, .greatest = 180, .above_least = true, .below_greatest = true};
-  const double degrees = fov ? read_number(*fov, "\"fov\"", angle) : 40;
+  const double degrees = fov ? read_number(*fov, "\"fov\"", fov_range) : 40;
   Camera camera;
   try {
     camera =
-        make_camera(position, look_at, up ? read_vector(*up, "\"up\"") : Vec3d{0, 1, 0}, degrees, projection);
+        make_camera(position, look_at, up ? read_vector(*up, "\"up\"", coordinate_range) : Vec3d{0, 1, 0},
+                    degrees, projection);
   } catch (const InputError& error) {
     throw InputError(node.place, error.what());
   }

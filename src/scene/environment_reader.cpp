@@ -79,10 +79,10 @@ Texture read_sky(const JsonNode& node) {
 
 Texture read_gradient(const JsonNode& node) {
   const ObjectReader reader(node, "\"gradient\"", gradient_keys);
-  const Vec3d zenith = read_color(reader.require("zenith"), "\"zenith\"", not_negative);
-  const Vec3d horizon = read_color(reader.require("horizon"), "\"horizon\"", not_negative);
+  const Vec3d zenith = read_color(reader.require("zenith"), "\"zenith\"", radiance_range);
+  const Vec3d horizon = read_color(reader.require("horizon"), "\"horizon\"", radiance_range);
   const JsonNode* ground = reader.find("ground");
-  const Vec3d below = ground ? read_color(*ground, "\"ground\"", not_negative) : Vec3d();
+  const Vec3d below = ground ? read_color(*ground, "\"ground\"", radiance_range) : Vec3d();
   return make_texture("a gradient", gradient_image(zenith, horizon, below, gradient_height));
 }
 
@@ -102,7 +102,7 @@ void read_environment(const JsonNode& node, const std::filesystem::path& file, S
   }
   Scene& scene = builder.scene;
   if (!kind || kind->key == "radiance") {
-    scene.environment = read_color(environment.require("radiance"), "\"radiance\"", not_negative);
+    scene.environment = read_color(environment.require("radiance"), "\"radiance\"", radiance_range);
     return;
   }
   EnvironmentImage& image = scene.environment_image;
@@ -112,9 +112,9 @@ void read_environment(const JsonNode& node, const std::filesystem::path& file, S
       });
   image.scale = kind->key == "sky" ? default_sky_scale : 1;
   if (const JsonNode* scale = environment.find("scale"))
-    image.scale = read_number(*scale, "\"scale\"", not_negative);
+    image.scale = read_number(*scale, "\"scale\"", radiance_range);
   if (const JsonNode* rotation = environment.find("rotation"))
-    image.rotation = read_number(*rotation, "\"rotation\"");
+    image.rotation = read_number(*rotation, "\"rotation\"", float_range);
   scene.environment = mean_environment(scene);
 }
 

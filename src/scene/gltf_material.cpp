@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/range.h"
 #include "materials/media.h"
 #include "materials/texture.h"
 #include "scene/gltf_value.h"
@@ -121,13 +122,20 @@ class GltfMaterialReader {
     out_.coverage = mask ? (alpha >= m_.alphaCutoff ? 1 : 0) : alpha;
   }
 
+  /// What is below 0, or too small to matter, is 0.
+  double emitted(double radiance) const {
+    if (!(radiance <= radiance_range.greatest))
+      document_.fail(materials, index_,
+                     fmt::format("it emits {:g}; it must be {}", radiance, radiance_range.text()));
+    return radiance_range.contains(radiance) ? radiance : 0;
+  }
+
   void set_emission() {
     const auto& factor = m_.emissiveFactor;
     const double strength =
         number_in(find_extension(m_.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
-    for (std::size_t i = 0; i < 3; ++i)
-      if (i < factor.size()) out_.ke[static_cast<int>(i)] = std::max(0.0, factor[i] * strength);
-    if (!is_finite(out_.ke)) out_.ke = {};
+    for (std::size_t i = 0; i < 3 && i < factor.size(); ++i)
+      out_.ke[static_cast<int>(i)] = emitted(factor[i] * strength);
     if (out_.emits()) set_map(Parameter::ke, textures_.emission, ColorSpace::srgb);
     out_.two_sided_emission = m_.doubleSided;
   }
@@ -137,7 +145,7 @@ class GltfMaterialReader {
     warn("unlit: it emits its base colour, and so lights other surfaces");
     const auto& factor = m_.pbrMetallicRoughness.baseColorFactor;
     out_.kd = {};
-    for (std::size_t i = 0; i < 3; ++i) out_.ke[static_cast<int>(i)] = std::max(0.0, component(factor, i));
+    for (std::size_t i = 0; i < 3; ++i) out_.ke[static_cast<int>(i)] = emitted(component(factor, i));
     set_map(Parameter::ke, textures_.base, ColorSpace::srgb);
     out_.two_sided_emission = true;
     out_.vertex_colors = false;
@@ -184,7 +192,7 @@ class GltfMaterialReader {
   /// glTF's 0 stands for none.
   double ior() {
     const double n = number_in(find_extension(m_.extensions, "KHR_materials_ior"), "ior", 1.5);
-    return n > 0 ? n : 1.5;
+    return n > 0 ? std::min(n, index_range.greatest) : 1.5;
   }
 
   /// Glass, where most of the light passes.

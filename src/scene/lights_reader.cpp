@@ -17,8 +17,8 @@ Vec3d read_direction(const JsonNode& node, const ObjectReader& reader, const Vec
   const JsonNode *direction = reader.find("direction"), *look_at = reader.find("look_at");
   if (!direction == !look_at)
     throw InputError(node.place, "the light needs \"direction\" or \"look_at\", one of them");
-  const Vec3d d =
-      direction ? read_vector(*direction, "\"direction\"") : read_vector(*look_at, "\"look_at\"") - position;
+  const Vec3d d = direction ? read_vector(*direction, "\"direction\"", coordinate_range)
+                            : read_vector(*look_at, "\"look_at\"", coordinate_range) - position;
   if (!(length(d) > 0) || !is_finite(d))
     throw InputError(direction ? direction->place : look_at->place,
                      "the light's direction must not be (0,0,0)");
@@ -53,7 +53,7 @@ DeltaLight read_delta_light(const JsonNode& node) {
     for (const char* key : {"position", "look_at", "intensity"}) refuse(key, "a directional light");
   } else {
     refuse("irradiance", "a light at a point; it has \"intensity\"");
-    light.position = read_vector(reader.require("position"), "\"position\"");
+    light.position = read_vector(reader.require("position"), "\"position\"", coordinate_range);
   }
   if (light.kind == Kind::point)
     for (const char* key : {"direction", "look_at"}) refuse(key, "a point light");
@@ -64,7 +64,8 @@ DeltaLight read_delta_light(const JsonNode& node) {
   else
     for (const char* key : {"inner_angle", "outer_angle"}) refuse(key, "a light that is no spot");
   const char* brightness = directional ? "irradiance" : "intensity";
-  light.intensity = read_vector(reader.require(brightness), fmt::format("\"{}\"", brightness), not_negative);
+  light.intensity = read_vector(reader.require(brightness), fmt::format("\"{}\"", brightness),
+                                directional ? radiance_range : not_negative);
   return light;
 }
 

@@ -20,7 +20,7 @@ using Kind = MaterialKey::Kind;
 std::string quoted(std::string_view key) { return fmt::format("\"{}\"", key); }
 
 std::array<float, 2> read_pair(const JsonNode& node, std::string_view name) {
-  const std::vector<double> numbers = read_numbers(node, name, 2);
+  const std::vector<double> numbers = read_numbers(node, name, 2, float_range);
   return {static_cast<float>(numbers[0]), static_cast<float>(numbers[1])};
 }
 
@@ -78,8 +78,9 @@ class MaterialReader {
   void read_absorption(const JsonNode& node) {
     const ObjectReader reader(node, "\"absorption\"", absorption_keys());
     constexpr Range color{.least = 0, .greatest = 1, .above_least = true};
-    material_.absorption = absorption_of(read_color(reader.require("color"), "\"color\"", color),
-                                         read_number(reader.require("distance"), "\"distance\"", positive));
+    material_.absorption =
+        absorption_of(read_color(reader.require("color"), "\"color\"", color),
+                      read_number(reader.require("distance"), "\"distance\"", length_range));
   }
 
   static bool is_reflectance(const MaterialKey& key) {
@@ -98,8 +99,8 @@ class MaterialReader {
   void read_color_of(const MaterialKey& key, const JsonNode& node, const std::string& name) {
     if (is_index(key, node)) {
       const ObjectReader index(node, name, index_keys());
-      const Vec3d eta = read_color(index.require("eta"), "\"eta\"", positive),
-                  k = read_color(index.require("k"), "\"k\"", not_negative);
+      const Vec3d eta = read_color(index.require("eta"), "\"eta\"", index_range),
+                  k = read_color(index.require("k"), "\"k\"", {.least = 0, .greatest = index_range.greatest});
       set_metal(key, {name, reflectance_of_index(eta, k), eta, k});
     } else if (node.type == JsonNode::Type::string && is_reflectance(key)) {
       std::vector<std::string_view> names;
@@ -129,9 +130,9 @@ class MaterialReader {
     if (const JsonNode* offset = reader.find("offset")) map.offset = read_pair(*offset, "\"offset\"");
     if (const JsonNode* clamp = reader.find("clamp")) map.clamp = read_boolean(*clamp, "\"clamp\"");
     if (const JsonNode* base = reader.find("base"))
-      map.base = static_cast<float>(read_number(*base, "\"base\""));
+      map.base = static_cast<float>(read_number(*base, "\"base\"", float_range));
     if (const JsonNode* gain = reader.find("gain"))
-      map.gain = static_cast<float>(read_number(*gain, "\"gain\""));
+      map.gain = static_cast<float>(read_number(*gain, "\"gain\"", float_range));
     if (const JsonNode* channel = reader.find("channel"))
       map.channel = static_cast<Channel>(choose(*channel, "channel", channel_names()));
     if (const JsonNode* filter = reader.find("filter")) map.filter = read_filter(key, *filter);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/range.h"
+
 namespace castray {
 
 namespace {
@@ -35,8 +37,7 @@ void append_indices(std::vector<Index3>& all, std::size_t triangles, const std::
 }  // namespace
 
 bool is_in_reach(const Vec3d& p) {
-  return std::abs(p.x) <= farthest_coordinate && std::abs(p.y) <= farthest_coordinate &&
-         std::abs(p.z) <= farthest_coordinate;
+  return coordinate_range.contains(p.x) && coordinate_range.contains(p.y) && coordinate_range.contains(p.z);
 }
 
 std::optional<TriangleFault> fault_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {

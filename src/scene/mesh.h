@@ -10,14 +10,11 @@
 
 namespace castray {
 
-/// Why a triangle can not be rendered.
+/// Why a triangle cannot be rendered.
 enum class TriangleFault : std::uint8_t { not_finite, no_area };
 inline constexpr std::size_t triangle_faults = 2;
 
-/// Coordinates beyond this, of either sign, count as infinite: below it, products of three are finite.
-inline constexpr double farthest_coordinate = 1e100;
-
-/// Whether no coordinate is beyond `farthest_coordinate` or nan.
+/// Whether all coordinates are in `coordinate_range`.
 bool is_in_reach(const Vec3d& p);
 
 /// The fault of the triangle of these corners: one of them is out of reach, or all lie on a line.

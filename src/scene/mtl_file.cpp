@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/files.h"
+#include "core/range.h"
 #include "core/text.h"
 #include "scene/line_reader.h"
 #include "scene/names.h"
@@ -34,7 +35,7 @@ struct NumberKey {
 };
 constexpr NumberKey number_keys[] = {
     {"ns", &MtlMaterial::ns, no_limit},
-    {"ni", &MtlMaterial::ni, no_limit},
+    {"ni", &MtlMaterial::ni, index_range.greatest},
     {"d", &MtlMaterial::dissolve, 1},
     {"tr", &MtlMaterial::transparency, 1},
     {"pr", &MtlMaterial::roughness, 1},
@@ -118,9 +119,12 @@ class MtlReader {
     mtl_.materials.push_back({.name = name, .place = lines_.place()});
   }
 
-  /// Takes a number into 0 .. greatest, with a warning where it is outside.
+  /// Takes a number into 0 .. greatest, with a warning where it is outside. What is too small to matter is 0.
   double in_range(const std::string& key, double value, double greatest) {
-    if (!std::isfinite(value)) lines_.fail(fmt::format("{} must be finite, not {}", key, value));
+    if (!float_range.contains(value))
+      lines_.fail(
+          fmt::format("{} must be a number of at most {}, not {:g}", key, float_range.greatest, value));
+    if (std::abs(value) < radiance_range.least_but_zero) return 0;
     if (value >= 0 && value <= greatest) return value;
     const double nearest = std::clamp(value, 0.0, greatest);
     warn(greatest == no_limit ? fmt::format("{} below 0: read as 0", key)

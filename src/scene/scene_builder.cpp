@@ -11,7 +11,9 @@
 #include "castray/error.h"
 #include "castray/image.h"
 #include "core/box.h"
+#include "core/range.h"
 #include "core/text.h"
+#include "materials/brightest_emission.h"
 #include "materials/surface_values.h"
 
 namespace castray {
@@ -427,6 +429,34 @@ void SceneBuilder::drop_flat() {
   keep_marked(mesh_, keep);
 }
 
+namespace {
+
+/// Factors of images are in range, and so are their values: products of both may not be.
+void check_brightness(const Scene& scene) {
+  const double brightest = brightest_emission(scene);
+  if (!(brightest <= radiance_range.greatest))
+    throw InputError(SourcePlace{scene.file.string()},
+                     fmt::format("images make radiance as great as {:.3g}; it must be {}", brightest,
+                                 radiance_range.text()));
+}
+
+}  // namespace
+
+/// What arrives from a light that is as far away as the scene is large is a float in kernels.
+void SceneBuilder::move_lights_to_scene_space() {
+  for (std::size_t i = 0; i < scene.delta_lights.size(); ++i) {
+    DeltaLight& light = scene.delta_lights[i];
+    light = scene.to_scene(light);
+    for (int c = 0; c < 3; ++c)
+      if (!radiance_range.contains(light.intensity[c]))
+        throw InputError(
+            SourcePlace{scene.file.string()},
+            fmt::format(
+                "lights[{}]: intensity / d^2 is {:g} where d, {:g}, is the size of the scene; it must be {}",
+                i, light.intensity[c], scene.unit, radiance_range.text()));
+  }
+}
+
 /// The first camera is the scene's.
 void SceneBuilder::place_cameras() {
   for (SceneCamera& camera : scene.cameras) camera.camera = scene.to_scene(camera.camera);
@@ -465,9 +495,10 @@ Scene SceneBuilder::finish() {
   scene.warnings = warnings.take();
   for (Material& m : scene.materials)  // an image that is black everywhere is no light
     if (mean_emission(scene, m) == Vec3d()) m.ke = {};
+  check_brightness(scene);
   for (std::uint32_t t = 0; t < scene.own_triangles(); ++t)
     if (scene.material_of(t).emits()) scene.lights.push_back(t);
-  for (DeltaLight& light : scene.delta_lights) light = scene.to_scene(light);
+  move_lights_to_scene_space();
   scene.default_environment = scene.lights.empty() && scene.delta_lights.empty() && !environment_given;
   if (scene.default_environment) scene.environment = Vec3d(1);
   place_cameras();

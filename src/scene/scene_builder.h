@@ -89,6 +89,7 @@ class SceneBuilder {
   void warn_of_missing_uvs();
   void drop_flat();  ///< what rounding has made so
   void require_triangles() const;
+  void move_lights_to_scene_space();
   void place_cameras();
 
   Mesh mesh_;  ///< what is no object's; in the end, everything

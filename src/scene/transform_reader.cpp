@@ -25,7 +25,7 @@ void check(const Transform& transform, const SourcePlace& place) {
 }
 
 Transform read_matrix(const JsonNode& node, std::string_view name) {
-  const Transform matrix = from_numbers(read_numbers(node, name, matrix_numbers));
+  const Transform matrix = from_numbers(read_numbers(node, name, matrix_numbers, coordinate_range));
   check(matrix, node.place);
   return matrix;
 }
@@ -37,20 +37,20 @@ Transform read_step(const JsonNode& node) {
                      "a transform step has one key: \"scale\", \"rotate\", \"translate\" or \"matrix\"");
   if (const JsonNode* scale = step.find("scale")) {
     const bool uniform = scale->type == JsonNode::Type::number;
-    const Vec3d factors =
-        uniform ? Vec3d(read_number(*scale, "\"scale\"")) : read_vector(*scale, "\"scale\"");
+    const Vec3d factors = uniform ? Vec3d(read_number(*scale, "\"scale\"", coordinate_range))
+                                  : read_vector(*scale, "\"scale\"", coordinate_range);
     if (factors.x == 0 || factors.y == 0 || factors.z == 0)
       throw InputError(scale->place, "\"scale\" must not be 0: nothing would be left");
     return Transform::scale(factors);
   }
   if (const JsonNode* rotate = step.find("rotate")) {
-    const std::vector<double> numbers = read_numbers(*rotate, "\"rotate\"", 4);
+    const std::vector<double> numbers = read_numbers(*rotate, "\"rotate\"", 4, coordinate_range);
     const Vec3d axis{numbers[0], numbers[1], numbers[2]};
     if (axis == Vec3d{}) throw InputError(rotate->place, "\"rotate\" needs an axis that is not (0,0,0)");
     return Transform::rotate(axis, numbers[3]);
   }
   if (const JsonNode* matrix = step.find("matrix")) return read_matrix(*matrix, "\"matrix\"");
-  return Transform::translate(read_vector(step.require("translate"), "\"translate\""));
+  return Transform::translate(read_vector(step.require("translate"), "\"translate\"", coordinate_range));
 }
 
 std::vector<Transform> read_transform_file(const JsonNode& node, const std::filesystem::path& scene_file) {

@@ -116,8 +116,8 @@ const std::vector<Case> cases = {
     render({"--lights", "treee"}, "--lights: 'treee' is none of its values; did you mean 'tree'?"),
     render({"--tone", "gamma:0"}, "unknown tone curve 'gamma:0'; use srgb, linear, or gamma:G with G > 0"),
     // Views
-    render({"--fov", "0"}, "the camera's fov must be greater than 0 and less than 180 degrees, not 0"),
-    render({"--fov", "180"}, "the camera's fov must be greater than 0 and less than 180 degrees, not 180"),
+    render({"--fov", "0"}, "the camera's fov must be at least 1e-05 and less than 180 degrees, not 0"),
+    render({"--fov", "180"}, "the camera's fov must be at least 1e-05 and less than 180 degrees, not 180"),
     render({"--look-from", "nan,0,0"}, "--look-from 'nan': must be a number"),
     render({"--look-from", "0,0"}, "--look-from '0,0': must be X,Y,Z"),
     render({"--look-from", "0,0,1", "--look-at", "0,0,1"},
@@ -126,7 +126,8 @@ const std::vector<Case> cases = {
            "the camera's up must not be parallel to its view direction"),
     render({"--environment", "sky.exr"},
            "--environment 'sky.exr': must be R,G,B or off; an image around the scene is not read yet"),
-    render({"--environment", "1,-1,1"}, "--environment '1,-1,1': must be at least 0 in each of R,G,B"),
+    render({"--environment", "1,-1,1"},
+           "--environment '1,-1,1': must be 0, or at least 1e-30 and at most 1e+30 in each of R,G,B"),
     // Outputs
     render({"-o", "x"}, "x: has no suffix; written are .ppm .png .pfm .hdr .exr .film"),
     render({"-o", "x.jpg"},

@@ -243,3 +243,20 @@ TEST_CASE("images are in the buffer, in data URIs, or in files with escaped name
     CHECK(scene.textures[0].bytes.size() == 8);
   }
 }
+
+TEST_CASE("emission and indices are kept within what kernels compute with") {
+  const auto glowing = [](double strength) {
+    return Json{{"emissiveFactor", {1, 0.5, 0}},
+                {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", strength}}}}}};
+  };
+  CHECK(is_near(material_of(glowing(1e20)).ke / 1e20, {1, 0.5, 0}));
+  CHECK(material_of(glowing(1e-40)).ke == Vec3d());
+  CHECK_THROWS_WITH(
+      material_of(glowing(1e39)),
+      Catch::Contains("materials[0]: it emits 1e+39; it must be 0, or at least 1e-30 and at most"));
+  const Material glass = material_of({{"extensions",
+                                       {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                                        {"KHR_materials_volume", {{"thicknessFactor", 1}}},
+                                        {"KHR_materials_ior", {{"ior", 1e9}}}}}});
+  CHECK(glass.ior == 1e4);
+}

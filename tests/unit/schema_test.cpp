@@ -27,7 +27,7 @@ Json constant_schema(const MaterialKey& key) {
   const Range& r = key.range;
   const bool bounded = r.greatest < std::numeric_limits<double>::max();
   if (key.name == "absorption") return {{"anyOf", {reference("radiance"), reference("absorption")}}};
-  if (key.kind == MaterialKey::Kind::color) return reference(bounded ? "reflectance" : "radiance");
+  if (key.kind == MaterialKey::Kind::color) return reference(r.greatest <= 1 ? "reflectance" : "radiance");
   Json number{{"type", "number"}, {r.above_least ? "exclusiveMinimum" : "minimum", r.least}};
   if (bounded) number["maximum"] = r.greatest;
   return number;
