@@ -62,7 +62,8 @@ class PreparedScene {
  public:
   /// `scene` must outlive this object and not change. Of `options`, the ones that shape what is built count:
   /// size, threads to build with, integrator, precision, epsilon, max-depth, isa, accel, build, generic,
-  /// lights, mis, reuse and reconstruct. Throws InputError if options contradict the scene or one another.
+  /// lights, mis, reuse, reconstruct and edge samples. Throws InputError if options contradict the scene or
+  /// one another.
   PreparedScene(const Scene& scene, const RenderOptions& options);
   PreparedScene(Scene&&, const RenderOptions&) = delete;
   PreparedScene(PreparedScene&&) noexcept;

@@ -65,6 +65,10 @@ struct RenderOptions {
   /// where paths are shared and a pilot finds that it pays; not with target error or replicates. `on`: shares
   /// paths.
   Switch reconstruct = Switch::automatic;
+  /// How many samples the tiles that see an edge of a surface get for each sample of the others, where the
+  /// film keeps differences: from 1 to most_edge_samples. Their mean is one sample of the film. Else as many
+  /// as usually pay.
+  std::optional<int> edge_samples;
   std::optional<double> time_limit;  ///< seconds; every pixel gets a sample, however long that takes
   /// An early stop comes at the end of a pass over the image, so that the film can be resumed. Else it comes
   /// at once, and some rows have a sample or some more than others. A pass takes about a second, or one
@@ -75,6 +79,8 @@ struct RenderOptions {
   /// gets.
   std::optional<double> target_error;
 };
+
+inline constexpr int most_edge_samples = 8;
 
 /// A limit of `spp` for renders to a target error that is no limit in practice.
 inline constexpr std::uint64_t most_samples_to_target = std::uint64_t{1} << 16;

@@ -177,6 +177,15 @@ const RenderFlag flags[] = {
      "the image from means and differences of pixels that share paths, unbiased [auto: where a pilot "
      "finds that it pays]",
      estimator, [](Request r, Text f, Text t) { r.options.reconstruct = parse_choice(f, t, switch_names); }},
+    {"edge-samples", "auto|N",
+     "where the image is reconstructed, samples of the places that see edges for each sample of others "
+     "[auto: 3, with mirrors or glass 1]",
+     estimator,
+     [](Request r, Text f, Text t) {
+       r.options.edge_samples =
+           t == "auto" ? std::nullopt
+                       : std::optional(static_cast<int>(parse_whole(f, t, 1, most_edge_samples)));
+     }},
     {"clamp-indirect", "X|off",
      "scale a sample's indirect light down to X: fewer bright dots, but biased [off]", estimator,
      [](Request r, Text f, Text t) {

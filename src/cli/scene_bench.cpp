@@ -22,11 +22,17 @@ constexpr struct {
   const char* name;
   const char* flags;
 } ablations[] = {
-    {"no shared paths", "--reuse off"},       {"independent samples", "--sampler independent"},
-    {"lights by area", "--lights area"},      {"no MIS", "--mis off"},
-    {"MIS everywhere", "--mis on"},           {"fixed roulette 0.8", "--rr 0.8"},
-    {"one lane (scalar)", "--isa scalar"},    {"BVH also for few triangles", "--accel bvh"},
-    {"every feature (generic)", "--generic"}, {"means alone", "--reconstruct off"},
+    {"no shared paths", "--reuse off"},
+    {"independent samples", "--sampler independent"},
+    {"lights by area", "--lights area"},
+    {"no MIS", "--mis off"},
+    {"MIS everywhere", "--mis on"},
+    {"fixed roulette 0.8", "--rr 0.8"},
+    {"one lane (scalar)", "--isa scalar"},
+    {"BVH also for few triangles", "--accel bvh"},
+    {"every feature (generic)", "--generic"},
+    {"means alone", "--reconstruct off"},
+    {"one sample at edges too", "--edge-samples 1"},
 };
 
 std::filesystem::path default_cache() {

@@ -64,10 +64,16 @@ void check_target(const RenderOptions& o, Fault fault) {
 
 /// Reconstruction is of shared paths, whose samples are planned beforehand.
 void check_reconstruction(const RenderOptions& o) {
-  if (o.reconstruct != Switch::on) return;
+  require(!o.edge_samples || (*o.edge_samples >= 1 && *o.edge_samples <= most_edge_samples),
+          fmt::format("--edge-samples {}: must be auto or between 1 and {}", o.edge_samples.value_or(0),
+                      most_edge_samples));
+  require(!o.edge_samples || o.reconstruct != Switch::off,
+          "--edge-samples: is for images from differences; leave out --reconstruct off");
+  if (o.reconstruct != Switch::on && !o.edge_samples) return;
+  const std::string flag = o.reconstruct == Switch::on ? "--reconstruct on" : "--edge-samples";
   require(o.reuse.automatic || o.reuse.width > 0,
-          "--reconstruct on: needs paths that pixels share; leave out --reuse off");
-  require(!o.target_error, "--reconstruct on: cannot go with --target-error; leave one out");
+          flag + ": needs paths that pixels share; leave out --reuse off");
+  require(!o.target_error, flag + ": cannot go with --target-error; leave one out");
 }
 
 /// What castRay does not have is refused, never ignored.
@@ -83,6 +89,7 @@ void check_reference(const RenderOptions& o) {
           "--reuse: " + reference + " shares no paths" + leave + (by_epsilon ? "" : " or off"));
   require(o.caustics != Switch::on, "--caustics on: " + reference + " has no paths from lights" + leave);
   require(o.reconstruct != Switch::on, "--reconstruct on: " + reference + " shares no paths" + leave);
+  require(!o.edge_samples, "--edge-samples: " + reference + " shares no paths" + leave);
   require(!o.camera, reference + " shows no other view of a prepared scene; prepare it anew");
   require(o.isa == "auto" || o.isa == "scalar",
           "--isa " + o.isa + ": " + reference + " has no vector kernels" + leave);

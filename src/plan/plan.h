@@ -21,6 +21,7 @@ struct Plan {
   int environment_points = 0;                ///< likewise
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
   bool reconstruct = false;            ///< if paths are shared, films keep what images are reconstructed from
+  int edge_samples = 1;                ///< if so: of tiles that see an edge, for each of the others
   std::size_t light_regions = 0;       ///< from which it is known what lights are seen; 0: it is not
   double gain_of_regions = 1;          ///< how many times smaller they make a light sample's mean square
   bool lights_by_solid_angle = false;  ///< points on them, where that can be had

@@ -31,6 +31,7 @@ const char* misfit(const Job& job, const Job& prepared) {
   if (a.reuse != b.reuse) return "--reuse";
   if (a.reconstruct != b.reconstruct && (a.reconstruct != Switch::off || b.reconstruct == Switch::on))
     return "--reconstruct";
+  if (a.edge_samples != b.edge_samples) return "--edge-samples";
   return nullptr;
 }
 
@@ -82,6 +83,7 @@ RenderResult render_replicates(const PreparedScene& scene, const RenderOptions& 
     throw InputError(fmt::format("--replicates: each may hold {} samples at most", replicate_length));
   if (options.reconstruct == Switch::on)
     throw InputError("--reconstruct on: cannot go with --replicates; leave one out");
+  if (options.edge_samples) throw InputError("--edge-samples: cannot go with --replicates; leave one out");
   RenderResult whole;
   for (std::uint64_t r = 0; r < replicates; ++r) {
     RenderOptions part_options = options;

@@ -55,13 +55,15 @@ CASTRAY_INLINE Uint key_of_pixel(uint32_t seed, Uint x, Uint y, uint64_t sample)
 
 CASTRAY_INLINE uint32_t index_of(uint64_t sample) { return (uint32_t)sample & ((1u << index_bits) - 1); }
 
-/// Draws the place in the pixel anew for pixels from number i on that see an edge.
+/// Draws the place in the pixel anew for pixels from number i on that see an edge. Their tile is repeated
+/// alike in all samples, so that they take each number of the sequence once.
 CASTRAY_INLINE void move_at_edges(const Context& c, const TileResult& pixels, int i, Uint x, Uint y,
                                   Float (&place)[4]) {
   const uint32_t edges = (uint32_t)(pixels.edges[i / tile_pixels] >> (i % tile_pixels)) & ((1u << width) - 1);
   if (edges == 0) return;
-  const Uint key = key_of_pixel(c.job.edge_seed, x, y, c.job.edge_sample);
-  const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index_of(c.job.edge_sample))}, PathBlocks::camera);
+  const uint64_t sample = c.job.edge_sample + place_of(c.job, i / tile_pixels).repeat;
+  const Uint key = key_of_pixel(c.job.edge_seed, x, y, sample);
+  const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index_of(sample))}, PathBlocks::camera);
   for (int d = 0; d < 2; ++d) place[d] = select(mask_of_bits(edges), n.u[d], place[d]);
 }
 
@@ -83,7 +85,8 @@ void camera_rays(const Context& c, const TileResult& pixels, Paths& paths, Pixel
   for (int i = 0; i < paths.count; i += width) {
     const Uint entry = Uint((uint32_t)i) + lane_index();
     const Uint x = load(pixels.x + i), y = load(pixels.y + i);
-    const Uint key = key_of_pixel(c.options.seed, x, y, c.job.sample);
+    const Uint key = with_repeat(key_of_pixel(c.options.seed, x, y, c.job.sample),
+                                 place_of(c.job, i / tile_pixels).repeat);
     Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
     if (c.scene.edges.kinds) move_at_edges(c, pixels, i, x, y, n.u);
     const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));

@@ -61,6 +61,7 @@ inline constexpr int batch_size = tile_pixels * max_tiles;
 /// Top left pixel of a tile, in the full image, and its place in the grid of tiles.
 struct TilePlace {
   int x, y, grid_x, grid_y;
+  uint32_t repeat = 0;  ///< of the tile's sample: each has random numbers of its own
 };
 
 /// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.
@@ -69,9 +70,10 @@ struct TileJob {
   int grid_x, grid_y;  ///< of the first tile, in the grid of tiles
   int tiles;
   uint64_t sample;
-  uint64_t edge_sample = 0;  ///< pixels that see an edge have the camera ray of this sample under `edge_seed`
+  /// Pixels that see an edge have the camera ray of this sample, plus the tile's repeat, under `edge_seed`.
+  uint64_t edge_sample = 0;
   uint32_t edge_seed = 0;
-  /// By tile, where it is, if tiles are not side by side; these have no ragged edges. Null: side by side.
+  /// By tile, where it is, if tiles are not side by side. Null: side by side, none of them repeated.
   const TilePlace* places = nullptr;
 };
 

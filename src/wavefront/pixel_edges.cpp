@@ -68,6 +68,14 @@ std::vector<Corner> corners(const Scene& scene, const KernelApi& kernel, const K
 
 }  // namespace
 
+bool PixelEdges::any(int x0, int y0, int x1, int y1) const {
+  for (int y = y0; y < y1; ++y) {
+    const std::uint8_t* kinds = &kinds_[place(x0, y)];
+    if (std::any_of(kinds, kinds + (x1 - x0), [](std::uint8_t kind) { return kind != smooth; })) return true;
+  }
+  return false;
+}
+
 PixelEdges::PixelEdges(const Scene& scene, const KernelApi& kernel, const KernelSceneData& data,
                        const Window& window, int threads)
     : x0_(window.x0 - margin), y0_(window.y0 - margin), width_(window.width() + 2 * margin) {

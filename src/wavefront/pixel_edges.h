@@ -18,6 +18,8 @@ class PixelEdges {
              int threads);
 
   EdgeTable table() const { return {kinds_.data(), x0_, y0_, width_}; }
+  /// Whether any pixel with x0 <= x < x1, y0 <= y < y1 of those that the table has sees one.
+  bool any(int x0, int y0, int x1, int y1) const;
   /// Whether pixel (x,y) of the window sees the outline of a lamp.
   bool of_lamp(int x, int y) const { return kinds_[place(x, y)] == lamp_edge; }
 

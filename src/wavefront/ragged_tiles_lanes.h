@@ -1,6 +1,6 @@
 #pragma once
 
-#include "wavefront/context_lanes.h"
+#include "wavefront/sequence_keys_lanes.h"
 
 // Tiles with ragged edges: straight edges between tiles whose errors differ can be seen.
 
@@ -42,10 +42,11 @@ CASTRAY_INLINE int reach_on_surface(const uint8_t* kinds, int step_across, int s
 /// from the tile's first pixel. It reaches up to 4 pixels in a first sample, so that the edge is in all
 /// places alike, half as far in the next, but not past an edge of a surface: paths are shared best on one
 /// surface.
-CASTRAY_INLINE Seam seam_at(const Context& c, uint32_t key, int tile, int axis, int edge, int along) {
+CASTRAY_INLINE Seam seam_at(const Context& c, uint32_t key, const TilePlace& tile, int axis, int edge,
+                            int along) {
   const EdgeTable& table = c.scene.edges;
-  const int origin[2] = {(c.job.grid_x + tile) * tile_size, c.job.grid_y * tile_size};
-  const int pixel[2] = {c.job.x + tile * tile_size - table.x0, c.job.y - table.y0};
+  const int origin[2] = {tile.grid_x * tile_size, tile.grid_y * tile_size};
+  const int pixel[2] = {tile.x - table.x0, tile.y - table.y0};
   const int step[2] = {1, table.width};
   const Uint across((uint32_t)(origin[axis] + edge)), from((uint32_t)(origin[1 - axis] + along));
   const uint32_t dice = lane(hash_combine(hash_combine(Uint(key + (uint32_t)axis), across), from), 0);
@@ -61,11 +62,12 @@ CASTRAY_INLINE Seam seam_at(const Context& c, uint32_t key, int tile, int axis, 
 /// pixel is in one tile.
 CASTRAY_INLINE void place_in_strips(const Context& c, uint32_t key, int tile, TileResult& result) {
   constexpr int strips = (tile_size + 2 * ragged_reach) / strip_side;
+  const TilePlace place = place_of(c.job, tile);
   Seam seams[2][2][strips];  // by axis, edge and strip
   for (int axis = 0; axis < 2; ++axis)
     for (int high = 0; high < 2; ++high)
       for (int s = 0; s < strips; ++s)
-        seams[axis][high][s] = seam_at(c, key, tile, axis, high * tile_size, s * strip_side - ragged_reach);
+        seams[axis][high][s] = seam_at(c, key, place, axis, high * tile_size, s * strip_side - ragged_reach);
   for (int i = 0; i < tile_pixels; ++i) {
     int p[2] = {i % tile_size, i / tile_size};
     for (int axis = 0; axis < 2; ++axis) {
@@ -78,8 +80,8 @@ CASTRAY_INLINE void place_in_strips(const Context& c, uint32_t key, int tile, Ti
       across = high ? tile_size + steps : -1 - steps;
       along ^= half_strip;
     }
-    result.x[tile * tile_pixels + i] = (uint32_t)(c.job.x + tile * tile_size + p[0]);
-    result.y[tile * tile_pixels + i] = (uint32_t)(c.job.y + p[1]);
+    result.x[tile * tile_pixels + i] = (uint32_t)(place.x + p[0]);
+    result.y[tile * tile_pixels + i] = (uint32_t)(place.y + p[1]);
   }
 }
 

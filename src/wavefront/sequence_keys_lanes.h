@@ -13,6 +13,11 @@ CASTRAY_INLINE Uint with_epoch(Uint key, uint64_t sample) {
   return epoch ? hash_combine(key, Uint(~epoch)) : key;
 }
 
+/// Folds the repeat of a tile's sample into a key.
+CASTRAY_INLINE Uint with_repeat(Uint key, uint32_t repeat) {
+  return repeat ? hash_combine(key, Uint(0x2e9ea7u + repeat)) : key;
+}
+
 CASTRAY_INLINE uint32_t hash_once(uint32_t a, uint32_t b) { return lane(hash_combine(Uint(a), Uint(b)), 0); }
 
 CASTRAY_INLINE TilePlace place_of(const TileJob& job, int tile) {
@@ -24,7 +29,7 @@ CASTRAY_INLINE uint32_t tile_key(const Context& c, int tile) {
   const TilePlace place = place_of(c.job, tile);
   const uint32_t key = hash_once(hash_once(hash_once(c.options.seed, 0x7411u), (uint32_t)place.grid_x),
                                  (uint32_t)place.grid_y);
-  return lane(with_epoch(Uint(key), c.job.sample), 0);
+  return lane(with_repeat(with_epoch(Uint(key), c.job.sample), place.repeat), 0);
 }
 
 /// The world of a sample (see PartialTriangles), one for all its pixels: in one world all visibilities are

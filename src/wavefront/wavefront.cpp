@@ -19,6 +19,7 @@
 #include "wavefront/kernel_scene.h"
 #include "wavefront/pilot.h"
 #include "wavefront/pixel_edges.h"
+#include "wavefront/repeated_tiles.h"
 #include "wavefront/tile_grid.h"
 #include "wavefront/try_lights.h"
 
@@ -32,19 +33,12 @@ struct FreeScratch {
   void operator()(void* p) const { ::operator delete(p, scratch_alignment); }
 };
 
-/// What a thread works in.
-struct Workplace {
-  std::unique_ptr<void, FreeScratch> scratch;
-  std::vector<float> radiance, emitted;
-  std::vector<std::uint32_t> place;
+/// Room for the results of a job.
+struct TileBuffers {
+  std::vector<float> radiance = std::vector<float>(3 * batch_size),
+                     emitted = std::vector<float>(3 * batch_size);
+  std::vector<std::uint32_t> place = std::vector<std::uint32_t>(2 * batch_size);
 
-  explicit Workplace(const KernelApi& kernel)
-      : scratch(::operator new(kernel.scratch_bytes, scratch_alignment)),
-        radiance(3 * batch_size),
-        emitted(3 * batch_size),
-        place(2 * batch_size) {
-    std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
-  }
   TileResult result(bool with_emitted) {
     TileResult result{&place[0],
                       &place[batch_size],
@@ -55,6 +49,17 @@ struct Workplace {
                       0};
     for (std::size_t c = 0; with_emitted && c < 3; ++c) result.emitted[c] = &emitted[c * batch_size];
     return result;
+  }
+};
+
+/// What a thread works in.
+struct Workplace {
+  std::unique_ptr<void, FreeScratch> scratch;
+  TileBuffers tiles, repeats;
+
+  explicit Workplace(const KernelApi& kernel)
+      : scratch(::operator new(kernel.scratch_bytes, scratch_alignment)) {
+    std::memset(scratch.get(), 0, kernel.scratch_bytes);  // indices past the end of a wave must be valid ones
   }
 };
 
@@ -107,6 +112,7 @@ class WavefrontRun {
       : window_(job.window),
         scene_(data.view),
         differences_(keeps_differences(job.options, plan)),
+        edge_samples_(differences_ ? plan.edge_samples : 1),
         edge_emission_(scene, kernel, data, window_, job.options),
         options_(kernel_options(job.options, plan, differences_)),
         render_tiles_(kernel.render_tiles[plan.features]),
@@ -129,7 +135,7 @@ class WavefrontRun {
   /// bands. A few columns after the other, each with all samples, so that their sums stay in the cache.
   void render_band(int row, const SampleRange& samples, const SampleMap& map, Film& film, RowStats& stats) {
     Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
-    TileResult result = workplace.result(differences_);
+    TileResult result = workplace.tiles.result(differences_);
     const int columns = (window_.width() + 2 * ragged_reach) / tile_size + 2;
     for (int column = 0; column < columns; column += max_tiles)
       for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
@@ -146,9 +152,9 @@ class WavefrontRun {
             job.sample = drawn;
             // what pixels see of an edge is the better spread the longer the sequence of their camera rays:
             // it is one for both halves, as these pixels have no part in differences
-            job.edge_sample = s;
+            job.edge_sample = s * static_cast<std::uint64_t>(edge_samples_);
             job.edge_seed = options_.seed;
-            render_tiles_(scene_, options, job, workplace.scratch.get(), result);
+            render_job(job, grid.reach, options, workplace, result);
             job.sample = s;
             if (differences_)
               add_tiles(job, grid.reach, result, map, film, stats);
@@ -162,6 +168,20 @@ class WavefrontRun {
   }
 
  private:
+  /// Renders a job, its tiles that see an edge several times.
+  void render_job(const TileJob& job, int reach, const KernelOptions& options, Workplace& workplace,
+                  TileResult& result) const {
+    const auto render = [&](const TileJob& part, TileResult& to) {
+      render_tiles_(scene_, options, part, workplace.scratch.get(), to);
+    };
+    if (edge_samples_ == 1) return render(job, result);
+    const RepeatedTiles tiles(job, edges_, reach, edge_samples_);
+    if (!tiles.any_repeated()) return render(job, result);
+    TileResult part = workplace.repeats.result(true);
+    tiles.render([&](const TileJob& some) { render(some, part); }, part, result);
+    result.rays += part.rays;
+  }
+
   /// All that the tiles of any sample's grid reach.
   void find_first_hits() {
     constexpr int margin = 2 * tile_size;
@@ -182,7 +202,7 @@ class WavefrontRun {
 #pragma omp parallel for schedule(dynamic) num_threads(static_cast <int>(workplaces_.size()))
     for (int y = 0; y < table.height; y += tile_size) {
       Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
-      TileResult result = workplace.result(false);
+      TileResult result = workplace.tiles.result(false);
       for (int x = 0; x < table.width; x += max_tiles * tile_size) {
         const TileJob job{table.x0 + x, table.y0 + y, 0, 0, max_tiles, options_.ragged};
         render_tiles_(scene_, options_, job, workplace.scratch.get(), result);
@@ -311,6 +331,7 @@ class WavefrontRun {
   KernelScene scene_;
   bool differences_;  ///< kept by the film
   PixelEdges edges_;  ///< if so
+  int edge_samples_;  ///< as in Plan; 1 if not
   EdgeEmission edge_emission_;
   KernelOptions options_;
   RenderTiles render_tiles_;
@@ -359,7 +380,8 @@ class Wavefront final : public PreparedIntegrator {
   std::string decisions(const Job& job) const override {
     std::string items = plan_.light_paths ? "; light-paths=on" : "";
     items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
-    if (keeps_differences(job.options, plan_)) items += "; differences=on";
+    if (keeps_differences(job.options, plan_))
+      items += fmt::format("; differences=on; edge-samples={}", plan_.edge_samples);
     if (plan_.light_regions > 0) items += "; light-choice=learned";
     return items;
   }

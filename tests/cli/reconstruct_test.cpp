@@ -78,6 +78,36 @@ TEST_CASE("by default the box is reconstructed, parts and resumed renders too, w
   CHECK_THAT(run_castray({"info", "r.film"}, folder.path()).out, !Catch::Contains("means and differences"));
 }
 
+TEST_CASE("films with other numbers of samples at edges are not merged") {
+  const TemporaryFolder folder;
+  const auto run = [&](const Words& words) { return run_castray(words, folder.path()); };
+  REQUIRE(run(render({"--samples", "0:2", "-o", "a.film"})).exit_code == 0);
+  REQUIRE(run(render({"--samples", "2:2", "--edge-samples", "2", "-o", "b.film"})).exit_code == 0);
+  REQUIRE(run(render({"--samples", "2:2", "--edge-samples", "3", "-o", "c.film"})).exit_code == 0);
+  const RunResult refused = run({"merge", "a.film", "b.film", "-o", "m.film"});
+  CHECK(refused.exit_code == 2);
+  CHECK_THAT(refused.err, Catch::Contains("edge-samples=2 against edge-samples=3"));
+  CHECK(run({"merge", "a.film", "c.film", "-o", "m.film"}).exit_code == 0);
+}
+
+TEST_CASE("numbers of samples at edges that cannot be are refused") {
+  const auto refused = [](const Words& more, const std::string& words) {
+    Words command = {"render", box, "-q", "--size", "48x40", "-o", "x.pfm", "--edge-samples"};
+    command.insert(command.end(), more.begin(), more.end());
+    const RunResult result = run_castray(command);
+    CHECK(result.exit_code == 2);
+    CHECK(result.error_lines() == 1);
+    CHECK_THAT(result.err, Catch::Contains("--edge-samples") && Catch::Contains(words));
+  };
+  refused({"0"}, "between 1 and 8");
+  refused({"9"}, "between 1 and 8");
+  refused({"2", "--reconstruct", "off"}, "leave out --reconstruct off");
+  refused({"2", "--reuse", "off"}, "leave out --reuse off");
+  refused({"2", "--target-error", "0.1"}, "cannot go with --target-error");
+  refused({"2", "--integrator", "reference"}, "the reference integrator");
+  refused({"2", "--replicates", "2", "--spp", "4"}, "cannot go with --replicates");
+}
+
 TEST_CASE("reconstruction is refused where there is nothing to reconstruct from") {
   const auto refused = [](const Words& more, const std::string& words) {
     Words command = {"render", box, "-q", "--size", "48x40", "--reconstruct", "on", "-o", "x.pfm"};

@@ -26,6 +26,7 @@ TEST_CASE("the options that an image holds are flags that render it again, byte 
       {"--integrator", "reference", "--precision", "double", "--epsilon", "0.01"},
       {"--integrator", "reference", "--fault", "skewed-light"},
       {"--reconstruct", "on"},
+      {"--reconstruct", "on", "--edge-samples", "2"},
       {"--replicates", "4", "--tone", "gamma:0.6"},
       {"--look-from", "278,273,-500", "--look-at", "278,200,0", "--fov", "60", "--environment", "0.1,0.2,0.3",
        "--two-sided-lights", "--generic", "--accel", "bvh"}};

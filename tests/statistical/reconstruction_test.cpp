@@ -38,10 +38,12 @@ double mean_of(const Image& image) {
   return sum / static_cast<double>(image.pixels.size());
 }
 
-Corrections corrections_of(const Scene& scene, std::uint64_t spp, std::uint64_t seeds) {
+Corrections corrections_of(const Scene& scene, std::uint64_t spp, std::uint64_t seeds, int edge_samples = 1) {
   Corrections result;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const Film film = render(scene, options_of(spp, 500 + seed)).film;
+    RenderOptions options = options_of(spp, 500 + seed);
+    options.edge_samples = edge_samples;
+    const Film film = render(scene, options).film;
     Image difference = image_of(film);
     const Image mean = film.image();
     for (std::size_t i = 0; i < mean.pixels.size(); ++i)
@@ -68,6 +70,7 @@ TEST_CASE("reconstructed images have the mean of their samples in every block", 
   for (const char* name : {"cornell_box", "cornell_conductor", "cornell_lights", "kinds/sun_and_sky",
                            "kinds/glass_ball", "kinds/facing_mirrors", "kinds/tiny_lamp"})
     check_unbiased(name, corrections_of(standard_scene(name), 6, 40));
+  check_unbiased("more samples at edges", corrections_of(standard_scene("cornell_box"), 6, 40, 3));
   check_unbiased("mesh", corrections_of(box_with_mesh(), 6, 40));
   check_unbiased("coverage", corrections_of(box_with([](Material& m) { m.coverage = 0.6; }), 6, 40));
   check_unbiased("textures", corrections_of(with_detail(standard_scene("cornell_box")), 6, 40));
@@ -93,6 +96,31 @@ TEST_CASE("outlines of lamps, seen by more rays, have the mean of all samples", 
   }
 }
 
+TEST_CASE("places at edges, sampled more often, have the mean of all samples", "[statistical]") {
+  const std::pair<const char*, Scene> scenes[] = {
+      {"mirrors", standard_scene("kinds/facing_mirrors")},
+      {"coverage", box_with([](Material& m) { m.coverage = 0.6; })},
+  };
+  for (const auto& [name, scene] : scenes) {
+    std::vector<std::vector<double>> once, often;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      RenderOptions options = options_of(3, 5000 + seed);
+      options.width = options.height = 32;
+      options.edge_samples = 4;
+      often.push_back(block_means(render(scene, options).film.image(), 4));
+      options.seed += 1000;
+      options.reconstruct = Switch::off;
+      options.edge_samples.reset();
+      once.push_back(block_means(render(scene, options).film.image(), 4));
+    }
+    const ExpectedBlocks expected(once);
+    const BlockScores scores = block_scores(often, expected.mean, expected.variance);
+    CAPTURE(name, scores.rms, scores.largest);
+    CHECK(scores.largest < score_limit(scores.count, 1e-5));
+    CHECK(scores.rms < 1.25);
+  }
+}
+
 TEST_CASE("many seeds show no bias of reconstructed images, in any scene", "[statistical][long]") {
   for (const std::string folder : {"", "kinds/"})
     for (const auto& entry :
@@ -100,7 +128,7 @@ TEST_CASE("many seeds show no bias of reconstructed images, in any scene", "[sta
       const std::string name = entry.path().stem().string();
       if (entry.path().extension() != ".json" || name == "castray.schema") continue;
       for (const std::uint64_t spp : {4u, 16u}) {
-        const Corrections corrections = corrections_of(standard_scene(folder + name), spp, 512);
+        const Corrections corrections = corrections_of(standard_scene(folder + name), spp, 512, 3);
         check_unbiased(name, corrections);
         CHECK(std::abs(corrections.relative.mean()) < 1e-4 + 3 * corrections.relative.error());
       }
@@ -111,7 +139,9 @@ TEST_CASE("weights of the same samples would make a render darker", "[statistica
   const Scene scene = standard_scene("cornell_box");
   Mean bias;
   for (std::uint64_t seed = 0; seed < 80; ++seed) {
-    const Film film = render(scene, options_of(16, 900 + seed)).film;
+    RenderOptions options = options_of(16, 900 + seed);
+    options.edge_samples = 1;  // else there is less noise to be mistaken for light
+    const Film film = render(scene, options).film;
     const PixelPlanes correction = corrections(film.differences(), 0, 0, 1);
     double sum = 0, brightness = 0;
     for (int y = 0; y < side; ++y)
