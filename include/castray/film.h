@@ -183,6 +183,13 @@ class Film {
 /// The same for any number of threads; 0: all that this process may use.
 Image image_of(const Film& film, int threads = 0);
 
+/// The memory, in bytes, of a film like this one of so many pixels, replicates left out.
+std::uint64_t bytes_of_film(const Film& like, std::uint64_t pixels);
+
+/// The memory, in bytes, that `image_of` and `write_film` take at most besides such a film of width x height
+/// pixels: the image, what it is reconstructed from, and what writers of formats make of it.
+std::uint64_t bytes_of_image(const Film& like, int width, int height, int threads);
+
 /// The noise of the film's image, from its replicates; none if it keeps fewer than two. The pixels of a block
 /// share the variance of the block's mean, times its pixels, times one factor of at least 1 for the whole
 /// film: the most by which the variance of larger blocks exceeds, on average, what independent blocks would

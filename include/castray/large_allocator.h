@@ -10,6 +10,9 @@ namespace castray {
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory);
 
+/// What a block of so many bytes takes of memory.
+std::size_t bytes_in_large_pages(std::size_t bytes);
+
 /// For vectors of numbers of every pixel.
 template <class T>
 struct LargeAllocator {

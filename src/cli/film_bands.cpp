@@ -4,14 +4,22 @@
 
 #include "castray/error.h"
 #include "castray/image_bands.h"
-#include "castray/scene.h"
+#include "cli/memory_limit.h"
 
 namespace castray::cli {
 
-int rows_within(std::uint64_t bytes, std::size_t bytes_of_pixel, int width) {
-  constexpr std::uint64_t image = 3 * sizeof(float), copies = 3;  // of the film, and of the image in writers
-  const std::uint64_t row = copies * (bytes_of_pixel + image) * static_cast<std::uint64_t>(width);
-  return static_cast<int>(std::clamp<std::uint64_t>(bytes / row, 1, std::uint64_t{max_image_side}));
+int least_band(int margin, int height) { return std::min(std::max(margin, tile_side), height); }
+
+std::optional<int> band_within(std::uint64_t bytes, int margin, int height,
+                               const std::function<std::uint64_t(int rows)>& bytes_of_rows) {
+  const auto fits = [&](int band) { return bytes_of_rows(std::min(band + 2 * margin, height)) <= bytes; };
+  int band = least_band(margin, height), too_many = height + 1;
+  if (!fits(band)) return std::nullopt;
+  while (too_many - band > 1) {
+    const int between = band + (too_many - band) / 2;
+    (fits(between) ? band : too_many) = between;
+  }
+  return band == height ? band : band / tile_side * tile_side;
 }
 
 void write_film_in_bands(const std::vector<std::filesystem::path>& outputs, const BandedFilm& film,
@@ -21,11 +29,12 @@ void write_film_in_bands(const std::vector<std::filesystem::path>& outputs, cons
     if (is_film_format(output))
       throw InputError({output.string()},
                        "a film is written as a whole only; raise --memory-limit, or write an image");
+  return_freed_memory();
   const Window& window = film.window;
   Metadata told;
   const auto rows = [&](int y0, int y1) {
     const int first = std::max(y0 - film.margin, 0), last = std::min(y1 + film.margin, window.height());
-    const Film part = film.rows(window.y0 + first, window.y0 + last);
+    const Film& part = film.rows(window.y0 + first, window.y0 + last);
     if (y0 == 0) told = metadata(part);
     Image image = image_of(part, threads);
     if (film.margin == 0) return image;

@@ -1,28 +1,58 @@
 #include "cli/memory_limit.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
+#include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
+#include <map>
 
-#include "castray/error.h"
 #include "cli/values.h"
-#include "plan/job.h"
-#include "plan/memory_need.h"
-#include "plan/plan.h"
 
 namespace castray::cli {
 
 namespace {
 
-std::uint64_t resident_bytes() {
-  std::ifstream in("/proc/self/statm");
-  std::uint64_t all = 0, resident = 0;
-  in >> all >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+constexpr std::uint64_t mebibyte = 1 << 20;
+
+/// The program's memory in bytes, by what the kernel calls it (proc(5)).
+class Status {
+ public:
+  Status() {
+    std::ifstream in("/proc/self/status");
+    std::string name, line;
+    for (; in >> name; std::getline(in, line))
+      if (name.starts_with("Rss") || name.starts_with("Vm")) in >> kibibytes_[name];
+  }
+  std::uint64_t operator[](const std::string& name) const {
+    const auto found = kibibytes_.find(name + ":");
+    return found == kibibytes_.end() ? 0 : 1024 * found->second;
+  }
+
+ private:
+  std::map<std::string, std::uint64_t> kibibytes_;
+};
+
+std::uint64_t bytes_of_stack() {
+  pthread_attr_t attributes;
+  std::size_t bytes = 0;
+  if (pthread_attr_init(&attributes) != 0) return 0;
+  pthread_attr_getstacksize(&attributes, &bytes);
+  pthread_attr_destroy(&attributes);
+  return bytes;
+}
+
+/// Lets the program's own memory, as address space, grow to `bytes`; returns what it might grow to before.
+std::uint64_t set_data_limit(std::uint64_t bytes) {
+  rlimit limit{};
+  getrlimit(RLIMIT_DATA, &limit);
+  const rlim_t former = limit.rlim_cur;
+  limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
+  setrlimit(RLIMIT_DATA, &limit);
+  return former;
 }
 
 }  // namespace
@@ -41,44 +71,41 @@ std::uint64_t share_of_memory() {
 }
 
 std::string bytes_text(std::uint64_t bytes) {
-  const double mebibytes = static_cast<double>(bytes) / (1 << 20);
+  const double mebibytes = static_cast<double>(bytes) / mebibyte;
   return mebibytes < 1024 ? fmt::format("{:.1f} MiB", mebibytes)
                           : fmt::format("{:.2f} GiB", mebibytes / 1024);
 }
 
-std::string MemoryNeed::text() const {
-  return fmt::format("{} with the scene read, {} for its tree and lights, {} for the film ({} a pixel)",
-                     bytes_text(scene), bytes_text(preparation), bytes_text(film()), film_pixel);
+std::uint64_t bytes_of_program() {
+  // Pages of code come into memory when they are first needed, some sooner, some later: whole steps are the
+  // same each time.
+  constexpr std::uint64_t to_come = 3 * mebibyte, step = 4 * mebibyte;
+  const Status status;
+  return status["RssAnon"] + (status["RssFile"] + to_come + step - 1) / step * step;
 }
 
-MemoryNeed memory_need(const Scene& scene, const RenderOptions& options) {
-  const Window window = window_of(scene.width, scene.height, options);
-  const Plan plan = make_plan(scene, options, window);
-  MemoryNeed need;
-  need.scene = resident_bytes();
-  need.preparation = bytes_to_prepare(scene, plan, options.integrator);
-  need.differences = options.integrator != Integrator::reference && keeps_differences(options, plan);
-  Film film({1, 1, 0, 0, 1, 1}, 1);
-  if (plan.light_paths) film.keep_splats();
-  if (need.differences) film.keep_differences();
-  need.film_pixel = bytes_of_pixel(film);
-  need.pixels = static_cast<std::uint64_t>(window.width()) * static_cast<std::uint64_t>(window.height());
-  return need;
+std::string more_is_needed(std::uint64_t limit, const std::string& what, std::uint64_t least) {
+  const std::uint64_t chance = mebibyte / 2;  // by which two runs differ
+  return fmt::format("--memory-limit of {}: {}; give --memory-limit {}M or more", bytes_text(limit), what,
+                     (least + chance + mebibyte - 1) / mebibyte);
 }
 
-MemoryLimit::MemoryLimit(std::uint64_t bytes) {
-  rlimit limit{};
-  getrlimit(RLIMIT_DATA, &limit);
-  former_ = limit.rlim_cur;
-  limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
-  setrlimit(RLIMIT_DATA, &limit);
+void return_freed_memory() {
+  constexpr int small = 1 << 17;  // the C library's own at first, which it raises
+  mallopt(M_MMAP_THRESHOLD, small);
+  mallopt(M_TRIM_THRESHOLD, small);
 }
 
-MemoryLimit::~MemoryLimit() {
-  rlimit limit{};
-  getrlimit(RLIMIT_DATA, &limit);
-  limit.rlim_cur = former_;
-  setrlimit(RLIMIT_DATA, &limit);
+MemoryLimit::MemoryLimit(std::uint64_t bytes, int threads) {
+  return_freed_memory();
+  // The kernel limits address space: stacks, and what large pages leave unused, are no memory.
+  const Status status;
+  const std::uint64_t there = status["RssAnon"] + status["RssFile"];
+  const std::uint64_t more = std::max(bytes, there) - there, unused = more / 4 + 8 * mebibyte;
+  former_ = set_data_limit(status["VmData"] + more + unused +
+                           static_cast<std::uint64_t>(threads) * bytes_of_stack());
 }
+
+MemoryLimit::~MemoryLimit() { set_data_limit(former_); }
 
 }  // namespace castray::cli

@@ -11,6 +11,7 @@
 #include "cli/display_flags.h"
 #include "cli/film_bands.h"
 #include "cli/memory_limit.h"
+#include "core/threads.h"
 
 namespace castray::cli {
 
@@ -52,11 +53,29 @@ struct Merge {
     return memory_limit.empty() ? share_of_memory() : parse_bytes("memory-limit", memory_limit);
   }
 
-  /// Whether the sum, one film besides and the image have room in memory.
+  /// What is in memory of `films` films like the first, in their rows, and of their image.
+  static std::uint64_t bytes_of_rows(const Film& first, std::uint64_t films, int width, int rows) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(rows);
+    return films * bytes_of_film(first, pixels) + bytes_of_image(first, width, rows, available_threads());
+  }
+
+  /// Whether the sum, one film besides, its file and the image have room in memory.
   bool fits() const {
     const Film first = read_film_header(inputs.front());
     const Window& w = first.window();
-    return rows_within(most_bytes(), bytes_of_pixel(first), w.full_width) >= w.full_height;
+    return bytes_of_program() + bytes_of_rows(first, 3, w.full_width, w.full_height) <= most_bytes();
+  }
+
+  int band_of(const Film& first, const Window& window, int margin) const {
+    const std::uint64_t most = most_bytes(), program = std::min(bytes_of_program(), most);
+    const auto bytes = [&](int rows) { return bytes_of_rows(first, 2, window.width(), rows); };
+    if (const auto band = band_within(most - program, margin, window.height(), bytes)) return *band;
+    const int least = least_band(margin, window.height());
+    if (memory_limit.empty()) return least;
+    const std::uint64_t needed = bytes_of_program() + bytes(std::min(least + 2 * margin, window.height()));
+    throw InputError(more_is_needed(
+        most, fmt::format("{} rows of two films and their image take {}", least, bytes_text(needed)),
+        needed));
   }
 
   int merge_in_bands(const Display& display, const CommonFlags& common) const {
@@ -65,9 +84,11 @@ struct Merge {
     const Film first = read_film_header(inputs.front());
     const Window window = merged.window();
     const int margin = first.differences().kept() ? reconstruction_margin : 0;
-    const int band =
-        std::max(rows_within(most_bytes(), bytes_of_pixel(first), window.width()) - 2 * margin, 1);
-    const BandedFilm film{window, band, margin, [&](int y0, int y1) { return merged.rows(y0, y1); }};
+    Film part;
+    const BandedFilm film{window, band_of(first, window, margin), margin, [&](int y0, int y1) -> const Film& {
+                            part = {};  // its memory is needed
+                            return part = merged.rows(y0, y1);
+                          }};
     write_film_in_bands(outputs, film, display, describe);
     if (common.verbose) tell_written(outputs);
     return 0;

@@ -9,12 +9,12 @@
 #include "cli/film_bands.h"
 #include "cli/interrupt.h"
 #include "cli/memory_limit.h"
+#include "cli/memory_need.h"
 #include "cli/render_command.h"
 #include "cli/render_passes.h"
 #include "cli/render_report.h"
 #include "cli/render_run.h"
 #include "core/files.h"
-#include "plan/job.h"
 
 namespace castray::cli {
 
@@ -31,36 +31,33 @@ bool is_as_asked(const RenderRequest& request, Stopped stopped) {
 }
 
 /// Where the whole film does not fit, and how many rows at a time do.
-std::optional<int> rows_at_a_time(const RenderRequest& request, const MemoryNeed& need, int width) {
+std::optional<int> rows_at_a_time(const RenderRequest& request, const MemoryNeed& need) {
   const std::uint64_t most = request.memory_limit.value_or(share_of_memory());
-  const std::uint64_t others = need.scene + need.preparation;
   if (need.all() <= most) return std::nullopt;
   const std::string flag = goes_with_no_bands(request);
-  if (!request.memory_limit && (others >= most || !flag.empty()))
-    return std::nullopt;  // it may fit all the same
-  const std::string why =
-      fmt::format("--memory-limit of {}: more is needed: {}", bytes_text(most), need.text());
-  const int rows = others < most ? rows_within(most - others, need.film_pixel, width) - 2 * need.margin() : 0;
-  if (rows < 1) throw InputError(why + "; give a higher --memory-limit");
-  if (!flag.empty())
-    throw InputError(
-        fmt::format("{}; {} cannot go with an image in bands: render --crop windows and merge their "
-                    "films, or give a higher --memory-limit",
-                    why, flag));
-  return rows;
+  const auto band = flag.empty() && need.fixed() < most
+                        ? band_within(most - need.fixed(), need.margin(), need.height,
+                                      [&](int rows) { return need.rows(rows); })
+                        : std::nullopt;
+  if (band || !request.memory_limit) return band;  // without a limit it may fit all the same
+  const std::string what = "more is needed: " + need.text();
+  if (flag.empty()) throw InputError(more_is_needed(most, what, need.in_least_bands()));
+  throw InputError(more_is_needed(
+      most,
+      fmt::format("{}; {} cannot go with an image in bands: render --crop windows and merge their films",
+                  what, flag),
+      need.all()));
 }
 
 /// The result is written without the limit, so that it is not lost.
 RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Scene& scene) {
-  MemoryNeed need = memory_need(scene, request.options);
-  need.film_pixel += bytes_of_pixel(request.passes);
+  const MemoryNeed need = memory_need(scene, request);
   if (request.verbose) fmt::print(stderr, "castray: memory: {}\n", need.text());
-  const std::optional<int> band =
-      rows_at_a_time(request, need, window_of(scene.width, scene.height, request.options).width());
+  const std::optional<int> band = rows_at_a_time(request, need);
   RenderResult result;
   {
     std::optional<MemoryLimit> limit;
-    if (request.memory_limit) limit.emplace(*request.memory_limit);
+    if (request.memory_limit) limit.emplace(*request.memory_limit, need.threads);
     if (band) return run.run_in_bands(scene, *band, need.margin());
     result = run.run(scene);
   }

@@ -87,7 +87,7 @@ RenderResult RenderRun::run_in_bands(const Scene& scene, int band, int margin) {
   const Window window = window_of(scene.width, scene.height, request_.options);
   if (!request_.quiet) display_.tell(fmt::format("in bands of {} rows, as memory has no room for all", band));
   RenderResult all;
-  const auto rows = [&](int y0, int y1) {
+  const auto rows = [&](int y0, int y1) -> const Film& {
     RenderOptions options = request_.options;
     options.crop = window;
     options.crop->y0 = y0, options.crop->y1 = y1;
@@ -152,15 +152,17 @@ RenderResult RenderRun::render_in_time(const PreparedScene& scene, const Film* s
 }
 
 double RenderRun::seconds_to_write(const Film& film) const {
-  const TemporaryFolder folder;
   const Clock::time_point begin = Clock::now();
   try {
+    const TemporaryFolder folder;
     std::vector<fs::path> trials;
     for (const fs::path& output : request_.outputs)
       trials.push_back(folder.path() / ("trial" + suffix_of(output)));
     write(trials, film);
   } catch (const InputError&) {
     // a full disk may be another one than that of the outputs
+  } catch (const fs::filesystem_error&) {
+    // no folder for temporary files
   }
   return seconds_since(begin);
 }

@@ -266,10 +266,6 @@ void replace_file(const fs::path& file, const fs::path& previous,
   temporary.take_place_of(target);
 }
 
-std::function<void(std::ostream&)> writer_of(std::string_view bytes) {
-  return [bytes](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); };
-}
-
 }  // namespace
 
 void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
@@ -281,10 +277,15 @@ void write_file(const fs::path& file, const std::function<void(std::ostream&)>& 
   replace_file(file, {}, write);
 }
 
-void write_file(const fs::path& file, std::string_view bytes) { write_file(file, writer_of(bytes)); }
+void write_file(const fs::path& file, std::string_view bytes) {
+  write_file(file, [bytes](std::ostream& out) {
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  });
+}
 
-void write_file_keeping(const fs::path& file, const fs::path& previous, std::string_view bytes) {
-  replace_file(file, previous, writer_of(bytes));
+void write_file_keeping(const fs::path& file, const fs::path& previous,
+                        const std::function<void(std::ostream&)>& write) {
+  replace_file(file, previous, write);
 }
 
 }  // namespace castray

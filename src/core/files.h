@@ -35,7 +35,7 @@ void write_file(const std::filesystem::path& file, std::string_view bytes);
 /// The same; the file that was there is kept as `previous`, in the same folder. At any time one of the two is
 /// there and whole.
 void write_file_keeping(const std::filesystem::path& file, const std::filesystem::path& previous,
-                        std::string_view bytes);
+                        const std::function<void(std::ostream&)>& write);
 
 /// Throws the InputError that `write_file` would, as far as that can be known without writing: the folder is
 /// missing or not writable, the target is a folder or write-protected.

@@ -324,6 +324,21 @@ std::size_t bytes_of_pixel(const Film& film) {
          (film.differences().kept() ? DifferenceSums::bytes_of_pixel : 0);
 }
 
+std::uint64_t bytes_of_film(const Film& like, std::uint64_t pixels) {
+  const auto blocks = [pixels](std::initializer_list<std::size_t> bytes_of_pixel) {
+    std::uint64_t sum = 0;
+    for (const std::size_t bytes : bytes_of_pixel) sum += bytes_in_large_pages(bytes * pixels);
+    return sum;
+  };
+  constexpr std::size_t sums = 3 * 2 * sizeof(double),
+                        terms = std::size_t{DifferenceSums::halves} * DifferenceSums::terms;
+  return blocks({sums, sizeof(std::uint32_t)}) +
+         (like.keeps_splats() ? blocks({sums, sizeof(std::uint64_t)}) : 0) +
+         (like.differences().kept() ? blocks({terms * DifferenceSums::channels * sizeof(std::int64_t),
+                                              terms * sizeof(std::uint32_t)})
+                                    : 0);
+}
+
 std::string samples_text(double samples_per_pixel) {
   return fmt::format("{:.{}f}", samples_per_pixel,
                      samples_per_pixel == std::floor(samples_per_pixel) ? 0 : 1);

@@ -40,8 +40,29 @@ std::uint32_t checksum(std::string_view bytes) {
 
 }  // namespace
 
+namespace {
+
+/// Passes bytes on, and knows the checksum of all so far.
+class ChecksummedStream {
+ public:
+  explicit ChecksummedStream(std::ostream& out) : out_(out) {}
+
+  void write(std::string_view bytes) {
+    if (bytes.empty()) return;  // whose place may be null, with which zlib begins anew
+    sum_ = crc32_z(sum_, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+  std::uint32_t checksum() const { return static_cast<std::uint32_t>(sum_); }
+
+ private:
+  std::ostream& out_;
+  uLong sum_ = crc32_z(0, nullptr, 0);
+};
+
+}  // namespace
+
 struct FilmFile {
-  static std::string bytes_of(const Film& film) {
+  static void write(const Film& film, std::ostream& stream) {
     json ranges = json::array(), replicates = json::array();
     for (const SampleRange& range : film.samples) ranges.push_back({range.first, range.count});
     for (const Film::Replicate& replicate : film.replicates_) replicates.push_back(replicate.index);
@@ -56,22 +77,22 @@ struct FilmFile {
     if (film.planned && film.samples != std::vector{*film.planned})
       header["planned"] = {film.planned->first, film.planned->count};
     if (film.keeps_splats()) header["splats"] = true;
-    std::string bytes = std::string(film.differences_.kept() ? magic_of_differences : magic) +
-                        header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n";
-    append_sums(bytes, film.sums_);
-    append(bytes, film.counts_);
+    ChecksummedStream out(stream);
+    out.write(film.differences_.kept() ? magic_of_differences : magic);
+    out.write(header.dump(-1, ' ', true, json::error_handler_t::replace) + "\n");
+    write_sums(out, film.sums_);
+    write_values(out, film.counts_);
     for (const Film::Replicate& replicate : film.replicates_) {
-      append_sums(bytes, replicate.sums);
-      append(bytes, replicate.counts);
-      append_sums(bytes, replicate.splats);
-      append(bytes, replicate.light_paths);
+      write_sums(out, replicate.sums);
+      write_values(out, replicate.counts);
+      write_sums(out, replicate.splats);
+      write_values(out, replicate.light_paths);
     }
-    append_sums(bytes, film.splats_);
-    append(bytes, film.light_paths_);
-    append(bytes, film.differences_.all_sums());
-    append(bytes, film.differences_.all_counts());
-    append(bytes, std::array{checksum(bytes)});
-    return bytes;
+    write_sums(out, film.splats_);
+    write_values(out, film.light_paths_);
+    write_values(out, film.differences_.all_sums());
+    write_values(out, film.differences_.all_counts());
+    write_values(out, std::array{out.checksum()});
   }
 
   /// The head of `bytes`: the film without its sums, and where they begin.
@@ -186,16 +207,22 @@ struct FilmFile {
 
  private:
   template <class Values>
-  static void append(std::string& bytes, const Values& values) {
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+  static void write_values(ChecksummedStream& out, const Values& values) {
+    out.write({reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]});
   }
 
+  /// Some at a time: memory has no room for all of them twice.
   template <class Sums>
-  static void append_sums(std::string& bytes, const Sums& sums) {
-    for (const Film::Sum& sum : sums) {
+  static void write_sums(ChecksummedStream& out, const Sums& sums) {
+    constexpr std::size_t at_a_time = 4096;
+    std::vector<double> pairs;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
       ExactSum<double> rounded;
-      two_sum(sum.high, sum.low, rounded);
-      append(bytes, std::array{rounded.sum, rounded.error});
+      two_sum(sums[i].high, sums[i].low, rounded);
+      pairs.insert(pairs.end(), {rounded.sum, rounded.error});
+      if (pairs.size() < at_a_time && i + 1 < sums.size()) continue;
+      write_values(out, pairs);
+      pairs.clear();
     }
   }
 
@@ -296,7 +323,7 @@ void write_film(const std::vector<std::filesystem::path>& files, const Film& fil
   std::optional<Image> image;
   for (const auto& file : files) {
     if (is_film_format(file)) {
-      write_file(file, FilmFile::bytes_of(film));
+      write_file(file, [&](std::ostream& out) { FilmFile::write(film, out); });
       continue;
     }
     if (!image) image = image_of(film, threads);
@@ -310,7 +337,7 @@ void write_film(const std::filesystem::path& file, const Film& film, const Displ
 }
 
 void write_checkpoint(const std::filesystem::path& file, const Film& film) {
-  write_file_keeping(file, previous_checkpoint(file), FilmFile::bytes_of(film));
+  write_file_keeping(file, previous_checkpoint(file), [&](std::ostream& out) { FilmFile::write(film, out); });
 }
 
 std::filesystem::path previous_checkpoint(const std::filesystem::path& file) {

@@ -139,4 +139,20 @@ Image image_of(const Film& film, int threads) {
   return image;
 }
 
+std::uint64_t bytes_of_image(const Film& like, int width, int height, int threads) {
+  const auto w = static_cast<std::uint64_t>(width), pixels = w * static_cast<std::uint64_t>(height);
+  constexpr std::uint64_t shown =
+      sizeof(Vec3f) + 3 * sizeof(std::uint16_t);  // by the tone curve, and as bytes
+  constexpr std::uint64_t noise = sizeof(Vec3f), line_buffers = 1024;
+  const std::uint64_t writing = pixels * (shown + (like.keeps_replicates() ? noise : 0)) + w * line_buffers;
+  std::uint64_t making = 0;
+  if (like.differences().kept()) {
+    constexpr std::uint64_t rows_of_a_thread = 6 * sizeof(float) + 3 * (3 + 1) * sizeof(double);
+    making = 3 * PixelPlane::bytes_of(width, height) +  // the corrections of the other half
+             bytes_to_solve(width, height, threads) +
+             static_cast<std::uint64_t>(threads) * w * rows_of_a_thread;
+  }
+  return pixels * sizeof(Vec3f) + std::max(making, writing);
+}
+
 }  // namespace castray

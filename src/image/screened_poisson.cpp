@@ -287,4 +287,15 @@ PixelPlanes solve_screened_poisson(PixelCouplings couplings, PixelPlanes b, int 
   return Multigrid(std::move(couplings), std::move(b), threads).solve();
 }
 
+std::uint64_t bytes_to_solve(int width, int height, int threads) {
+  constexpr std::uint64_t planes_of_level =
+      3 + 1 + 3 * 3;  // couplings, their inverse diagonal, b, x and next
+  std::uint64_t bytes = static_cast<std::uint64_t>(threads) * 2 *
+                        PixelPlane::bytes_of(width, rows_of_a_strip + 2 * rows_around);
+  for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
+    bytes += planes_of_level * PixelPlane::bytes_of(w, h);
+    if (std::max(w, h) <= coarsest_side) return bytes;
+  }
+}
+
 }  // namespace castray

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "castray/large_allocator.h"
 
@@ -16,6 +17,10 @@ struct PixelPlane {
   PixelPlane(int width, int height)
       : stride(width + 2),
         values(static_cast<std::size_t>(width + 2) * static_cast<std::size_t>(height + 2)) {}
+  static std::uint64_t bytes_of(int width, int height) {
+    return bytes_in_large_pages(sizeof(float) * static_cast<std::uint64_t>(width + 2) *
+                                static_cast<std::uint64_t>(height + 2));
+  }
   /// Row -1 <= y <= height, so that columns -1 <= x <= width can be read.
   float* row(int y) {
     return &values[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride) + 1];
@@ -38,5 +43,8 @@ struct PixelCouplings {
 /// number of multigrid cycles from zero, so that x is a linear function of b and the same for any number of
 /// threads.
 PixelPlanes solve_screened_poisson(PixelCouplings couplings, PixelPlanes b, int threads);
+
+/// The memory that this takes, its arguments included.
+std::uint64_t bytes_to_solve(int width, int height, int threads);
 
 }  // namespace castray

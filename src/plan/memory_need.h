@@ -12,4 +12,7 @@ namespace castray {
 /// measured of one triangle, which hardly depends on the mesh.
 std::uint64_t bytes_to_prepare(const Scene& scene, const Plan& plan, Integrator integrator);
 
+/// The memory, in bytes, of each thread of a render, at most: paths at work, stack, and the C library's.
+inline constexpr std::uint64_t bytes_of_thread = 1 << 20;
+
 }  // namespace castray
