@@ -65,10 +65,8 @@ RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Sce
   return result;
 }
 
-int render_scene(const RenderCommand& command, const CommonFlags& common) {
-  const RenderRun::Clock::time_point begin = RenderRun::Clock::now();
-  catch_snapshot_requests();
-  Scene scene = load_told(command.scene, command.given, common);
+int render_loaded(const RenderCommand& command, const CommonFlags& common, Scene& scene,
+                  RenderRun::Clock::time_point begin) {
   RenderRequest request = request_of(command, common, scene);
   check(request);
   apply_flags(request, scene);
@@ -95,6 +93,17 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
   const bool as_asked = is_as_asked(request, stopped);
   if (!request.quiet) report.print_summary(request.outputs, as_asked);
   return as_asked ? 0 : stopped == Stopped::interrupted ? 130 : 1;
+}
+
+int render_scene(const RenderCommand& command, const CommonFlags& common) {
+  const RenderRun::Clock::time_point begin = RenderRun::Clock::now();
+  catch_snapshot_requests();
+  Scene scene = load_told(command.scene, command.given, common);
+  try {
+    return render_loaded(command, common, scene, begin);
+  } catch (const InputError& error) {
+    throw placed_error(error, command, scene);
+  }
 }
 
 }  // namespace

@@ -83,6 +83,16 @@ RenderRequest request_of(const RenderCommand& command, const CommonFlags& common
   return request;
 }
 
+InputError placed_error(const InputError& error, const RenderCommand& command, const Scene& scene) {
+  const std::string_view text = error.what();
+  for (const RenderDefault& given : scene.render_defaults) {
+    const std::string flag = "--" + given.name;
+    const bool is_of_flag = text.starts_with(flag) && text.substr(flag.size()).find_first_of(" :") == 0;
+    if (is_of_flag && !command.is_given(given.name)) return {given.place, std::string(text)};
+  }
+  return error;
+}
+
 /// All that could spoil the result is found before the work starts.
 void check(const RenderRequest& request) {
   if (request.resume && !request.checkpoint)

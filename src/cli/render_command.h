@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "castray/error.h"
 #include "cli/arguments.h"
 #include "cli/common_flags.h"
 #include "cli/given_flag.h"
@@ -30,6 +31,9 @@ Scene load_told(const std::string& file, const std::vector<GivenFlag>& given, co
 
 /// Throws InputError where a value cannot be, also one of the scene's own defaults.
 RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene);
+
+/// The same error, at its place in the scene file where it is of one of the scene's own defaults.
+InputError placed_error(const InputError& error, const RenderCommand& command, const Scene& scene);
 
 /// Finds what could spoil the result before the work starts. Throws InputError.
 void check(const RenderRequest& request);

@@ -41,6 +41,42 @@ std::string unescape_item(std::string_view text) {
   return result;
 }
 
+namespace {
+
+/// By its byte order mark, or by the zero byte of its first ASCII letters.
+bool is_utf16(std::string_view text) {
+  return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
+         (text.size() >= 4 && (text[0] == 0) != (text[1] == 0) && (text[0] == 0) == (text[2] == 0) &&
+          (text[1] == 0) == (text[3] == 0));
+}
+
+struct Packer {
+  const char* name;
+  std::string_view magic;
+};
+constexpr Packer packers[] = {{"gzip", "\x1f\x8b"},
+                              {"zip", "PK\x03\x04"},
+                              {"bzip2", "BZh"},
+                              {"xz",
+                               "\xfd"
+                               "7zXZ"},
+                              {"7-Zip", "7z\xbc\xaf"},
+                              {"zstd", "\x28\xb5\x2f\xfd"},
+                              {"RAR", "Rar!"}};
+
+}  // namespace
+
+std::string why_no_text(std::string_view bytes) {
+  for (const Packer& packer : packers)
+    if (bytes.starts_with(packer.magic))
+      return std::string("is packed by ") + packer.name + "; unpack it first";
+  if (is_utf16(bytes)) return "is UTF-16; save it as UTF-8";
+  constexpr std::size_t looked_at = 512;
+  if (bytes.substr(0, looked_at).find('\0') != bytes.npos)
+    return "is binary, not a text; is it another format?";
+  return {};
+}
+
 std::string_view without_bom(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   return text;

@@ -8,6 +8,10 @@ namespace castray {
 /// `text` as it may stand in a one-line message: control characters as '?', cut after `longest` bytes.
 std::string printable(std::string_view text, std::size_t longest = 80);
 
+/// Why bytes are no text that is read here, as "is packed by gzip; unpack it first": packed files, UTF-16,
+/// and those with zero bytes near their beginning. Empty: nothing speaks against it.
+std::string why_no_text(std::string_view bytes);
+
 /// `text` without a UTF-8 byte order mark in front.
 std::string_view without_bom(std::string_view text);
 

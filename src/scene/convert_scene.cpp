@@ -59,9 +59,13 @@ Source read_mesh_source(const fs::path& file, const std::string& key,
   ObjFile mesh = read(file, builder.warnings);
   const std::vector<std::uint16_t> indices = materials.find_all(mesh, {});
   MeshOptions options;
-  for (std::size_t i = 0; i < indices.size(); ++i) options.materials[mesh.materials[i].name] = indices[i];
+  std::map<std::string, std::uint16_t> by_name;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    by_name[mesh.materials[i].name] = indices[i];
+    options.materials.add(mesh.materials[i].name, indices[i], {});
+  }
   builder.add(make_mesh(std::move(mesh), options, materials), file);
-  return {builder.finish(), key, options.materials, {}, {}};
+  return {builder.finish(), key, std::move(by_name), {}, {}};
 }
 
 /// The view that was found for a file without camera.

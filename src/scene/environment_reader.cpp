@@ -20,9 +20,7 @@ constexpr int sky_height = 512, gradient_height = 512;
 constexpr double default_sky_scale = 0.03;
 
 int read_image(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder) {
-  const std::filesystem::path path = file.parent_path() / read_string(node, "\"image\"");
-  if (!is_file(path)) throw InputError(node.place, "no such file: " + printable(path.string()));
-  return builder.add_texture(path, ColorSpace::srgb);
+  return builder.add_texture(file_named_by(node, "\"image\"", file), ColorSpace::srgb);
 }
 
 /// "time" of a sky, if the sun's place follows from it.

@@ -1,7 +1,11 @@
 #include "scene/file_finder.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
+#include "core/text.h"
+#include "scene/json_reader.h"
 #include "scene/names.h"
 
 namespace castray {
@@ -12,6 +16,19 @@ bool is_file(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   return fs::exists(status) && !fs::is_directory(status);
+}
+
+fs::path file_named_by(const JsonNode& node, std::string_view name, const fs::path& scene_file) {
+  const std::string& text = read_string(node, name);
+  if (text.find('\0') != text.npos)
+    throw InputError(node.place, fmt::format("{} must not hold a zero byte", name));
+  fs::path path = scene_file.parent_path() / text;
+  if (is_file(path)) return path;
+  std::error_code ignored;
+  throw InputError(
+      node.place,
+      fmt::format("{}: {}", fs::is_directory(path, ignored) ? "a folder, not a file" : "no such file",
+                  printable(path.string())));
 }
 
 const FileFinder::Listing& FileFinder::listing(const fs::path& folder) {

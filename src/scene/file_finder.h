@@ -6,10 +6,17 @@
 #include <string>
 #include <string_view>
 
+#include "scene/json_document.h"
+
 namespace castray {
 
 /// Whether there is something at that path that is no folder.
 bool is_file(const std::filesystem::path& path);
+
+/// The file that a member of a scene file names, relative to the scene's folder. Throws InputError with the
+/// node's place where there is none. `name` is what the message calls the member.
+std::filesystem::path file_named_by(const JsonNode& node, std::string_view name,
+                                    const std::filesystem::path& scene_file);
 
 /// Finds the files that OBJ and MTL files name.
 class FileFinder {

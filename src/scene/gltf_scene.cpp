@@ -36,8 +36,8 @@ class GltfMaterials {
     if (material >= 0) document_.at(document_.model.materials, material, "materials", "meshes", mesh);
     if (options_.material) return *options_.material;
     const std::size_t place = material < 0 ? names_.size() - 1 : static_cast<std::size_t>(material);
-    if (const auto replaced = options_.materials.find(names_[place]); replaced != options_.materials.end())
-      return replaced->second;
+    used_.insert(names_[place]);
+    if (const auto replaced = options_.materials.find(names_[place])) return *replaced;
     if (!indices_[place]) {
       Material made = make_material(document_, material, colored_.contains(material), builder_);
       made.name = names_[place];
@@ -46,13 +46,19 @@ class GltfMaterials {
     return *indices_[place];
   }
 
+  /// After all meshes.
+  void warn_of_unknown() const {
+    options_.materials.warn_of_unknown({used_.begin(), used_.end()}, builder_.warnings);
+  }
+
  private:
   const GltfDocument& document_;
   const MeshOptions& options_;
   SceneBuilder& builder_;
   std::vector<std::string> names_;
   std::vector<std::optional<std::uint16_t>> indices_;
-  std::set<int> colored_;  ///< of primitives with colours of vertices
+  std::set<std::string_view> used_;  ///< names
+  std::set<int> colored_;            ///< of primitives with colours of vertices
 };
 
 /// Whether it leaves nothing of one direction: normals then mean nothing.
@@ -97,6 +103,7 @@ void add_meshes(const GltfDocument& document, const std::vector<GltfPlaced>& mes
     if (is_shared)
       for (const Transform& place : places[m]) builder.place(*part_of, place);
   }
+  materials.warn_of_unknown();
   if (!has_faces) builder.add({}, document.path, object);
 }
 

@@ -184,6 +184,7 @@ const char* JsonNode::type_name() const {
 }
 
 JsonNode parse_json(std::string_view text, const std::string& file) {
+  if (const std::string why = why_no_text(text); !why.empty()) throw InputError(SourcePlace{file}, why);
   text = without_bom(text);
   TreeBuilder builder(text, file);
   constexpr bool strict = true, ignore_comments = true;

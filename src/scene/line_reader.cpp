@@ -11,17 +11,6 @@
 
 namespace castray {
 
-namespace {
-
-/// By its byte order mark, or by the zero byte of its first ASCII letters.
-bool is_utf16(std::string_view text) {
-  return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
-         (text.size() >= 4 && (text[0] == 0) != (text[1] == 0) && (text[0] == 0) == (text[2] == 0) &&
-          (text[1] == 0) == (text[3] == 0));
-}
-
-}  // namespace
-
 std::optional<double> parse_number(std::string_view word, bool* out_of_range) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
@@ -36,7 +25,7 @@ std::optional<double> parse_number(std::string_view word, bool* out_of_range) {
 
 LineReader::LineReader(std::string_view text, const std::string& file)
     : text_(without_bom(text)), file_(file) {
-  if (is_utf16(text)) throw InputError(SourcePlace{file}, "is UTF-16; save it as UTF-8");
+  if (const std::string why = why_no_text(text); !why.empty()) throw InputError(SourcePlace{file}, why);
 }
 
 SourcePlace LineReader::word_place() const {

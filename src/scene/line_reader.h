@@ -16,7 +16,7 @@ std::optional<double> parse_number(std::string_view word, bool* out_of_range = n
 /// backslash in front of the line's end continues it; a '#' in front of a word begins a comment.
 class LineReader {
  public:
-  /// Throws InputError where the text is UTF-16.
+  /// Throws InputError where it is no text (`why_no_text`).
   LineReader(std::string_view text, const std::string& file);
 
   /// Goes to the next line that holds anything. False at the end.

@@ -141,9 +141,7 @@ class MaterialReader {
       space = choose(*named, "colour space", {"srgb", "linear"}) == 0 ? ColorSpace::srgb : ColorSpace::linear;
     read_factor(key, reader.find("factor"));
     if (key.parameter == SurfaceParameter::reflectance) material_.eta = material_.k = {};  // the image is F
-    const JsonNode& image = reader.require("image");
-    const std::filesystem::path path = file_.parent_path() / read_string(image, "\"image\"");
-    if (!is_file(path)) throw InputError(image.place, "no such file: " + printable(path.string()));
+    const std::filesystem::path path = file_named_by(reader.require("image"), "\"image\"", file_);
     map.texture = builder_.add_texture(path, space, meaning_of(key));
     material_.map(*key.parameter) = map;
   }

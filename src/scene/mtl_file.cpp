@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_set>
 
 #include "core/files.h"
 #include "core/range.h"
@@ -116,6 +117,8 @@ class MtlReader {
   void begin_material() {
     const std::string name(lines_.rest());
     if (name.empty()) warn("newmtl without a name", Harm::none);
+    if (!names_.insert(name).second)
+      warn("newmtl of a name that is there already: the first material of it counts");
     mtl_.materials.push_back({.name = name, .place = lines_.place()});
   }
 
@@ -168,6 +171,7 @@ class MtlReader {
 
   WarningList& warnings_;
   LineReader lines_;
+  std::unordered_set<std::string> names_;
   MtlFile mtl_;
 };
 

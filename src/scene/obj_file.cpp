@@ -19,12 +19,13 @@ namespace castray {
 namespace {
 
 /// What may be odd about a great many lines.
-enum class Oddity : unsigned char { uv_index_0, normal_index_0, no_uvs, no_normals };
+enum class Oddity : unsigned char { uv_index_0, normal_index_0, no_uvs, no_normals, capitals };
 constexpr const char* oddities[] = {
     "texture coordinate index 0 is read as none",
     "normal index 0 is read as none",
     "a face names texture coordinates, but there are none before it; it gets none",
     "a face names normals, but there are none before it; it gets none",
+    "a statement in capitals means nothing; write v, vn, vt and f",
 };
 
 class ObjReader {
@@ -36,6 +37,9 @@ class ObjReader {
 
   ObjFile read() {
     while (lines_.next_line()) read_statement();
+    if (const Met& capitals = odd_[static_cast<std::size_t>(Oddity::capitals)];
+        mesh_.triangles.empty() && capitals.count > 0)
+      throw InputError(capitals.place, oddities[static_cast<std::size_t>(Oddity::capitals)]);
     store_smoothing();
     finish_colors();
     for (std::size_t i = 0; i < std::size(oddities); ++i)
@@ -63,6 +67,8 @@ class ObjReader {
       read_libraries();
     else if (key == "o" || (key == "g" && !names_objects_))
       begin_object(key == "o");
+    else if (key == "V" || key == "F" || key == "VN" || key == "VT")
+      note(Oddity::capitals);
     // Lines, points, curves: nothing to render.
   }
 

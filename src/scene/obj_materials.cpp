@@ -160,14 +160,15 @@ std::string ObjMaterials::not_found(const std::string& name, const Search& searc
                      known.empty() ? std::string() : suggestion(name, known));
 }
 
-std::vector<std::uint16_t> ObjMaterials::find_all(const ObjFile& obj,
-                                                  const std::map<std::string, std::uint16_t>& replaced) {
+std::vector<std::uint16_t> ObjMaterials::find_all(const ObjFile& obj, const ReplacedMaterials& replaced) {
+  std::vector<std::string_view> known;
   std::optional<Search> opened;  // not where all materials are replaced
   if (replaced.empty()) opened.emplace(*this, obj);
   std::vector<std::uint16_t> indices;
   for (const ObjFile::UsedMaterial& used : obj.materials) {
-    if (const auto other = replaced.find(used.name); other != replaced.end()) {
-      indices.push_back(other->second);
+    known.push_back(used.name);
+    if (const auto other = replaced.find(used.name)) {
+      indices.push_back(*other);
       continue;
     }
     if (!opened) opened.emplace(*this, obj);
@@ -178,6 +179,7 @@ std::vector<std::uint16_t> ObjMaterials::find_all(const ObjFile& obj,
       builder_.warnings.add(used.place, "usemtl in front of the mtllib that has the material", Harm::none);
     indices.push_back(found ? *found : default_material(!obj.mesh.colors.empty()));
   }
+  replaced.warn_of_unknown(known, builder_.warnings);
   return indices;
 }
 

@@ -10,6 +10,7 @@
 
 #include "scene/mtl_file.h"
 #include "scene/obj_file.h"
+#include "scene/replaced_materials.h"
 #include "scene/scene_builder.h"
 
 namespace castray {
@@ -22,8 +23,7 @@ class ObjMaterials {
 
   /// For each of `obj.materials` its position in Scene::materials; `replaced` has those of some names. What
   /// cannot be found is a grey diffuse material, with a warning.
-  std::vector<std::uint16_t> find_all(const ObjFile& obj,
-                                      const std::map<std::string, std::uint16_t>& replaced);
+  std::vector<std::uint16_t> find_all(const ObjFile& obj, const ReplacedMaterials& replaced);
 
  private:
   struct Library {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -14,8 +13,8 @@ namespace castray {
 enum class NormalsFrom : std::uint8_t { file, face, smooth };
 
 struct MeshOptions {
-  std::optional<std::uint16_t> material;           ///< of every triangle; else the file's own
-  std::map<std::string, std::uint16_t> materials;  ///< in place of the file's own, by their names there
+  std::optional<std::uint16_t> material;  ///< of every triangle; else the file's own
+  ReplacedMaterials materials;            ///< in place of the file's own
   NormalsFrom normals = NormalsFrom::file;
   double crease_angle = 180;  ///< smooth: faces that meet at a greater angle, in degrees, keep their edge
 };

@@ -33,6 +33,8 @@ class HeaderReader {
   HeaderReader(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
 
   PlyHeader read() {
+    if (!text_.starts_with("ply"))
+      if (const std::string why = why_no_text(text_); !why.empty()) throw InputError({file_.string()}, why);
     next_line();
     if (word() != "ply") fail("not a PLY file: its first line is not 'ply'");
     bool has_format = false;

@@ -108,12 +108,13 @@ class SceneFileReader {
   }
 
   /// By the names that the mesh's file has for materials.
-  std::map<std::string, std::uint16_t> read_replaced(const JsonNode& node) {
+  ReplacedMaterials read_replaced(const JsonNode& node) {
     if (node.type != JsonNode::Type::object)
       throw InputError(node.place,
                        fmt::format("\"materials\" of a mesh must be an object, not {}", node.type_name()));
-    std::map<std::string, std::uint16_t> replaced;
-    for (const JsonNode& member : node.children) replaced[member.key] = named_.find(member, material_name);
+    ReplacedMaterials replaced;
+    for (const JsonNode& member : node.children)
+      replaced.add(member.key, named_.find(member, material_name), member.key_place);
     return replaced;
   }
 
@@ -146,14 +147,7 @@ class SceneFileReader {
 
   std::filesystem::path mesh_path(const ObjectReader& mesh) const {
     const JsonNode& node = file_of(mesh);
-    std::filesystem::path path = file_.parent_path() / read_string(node, fmt::format("\"{}\"", node.key));
-    if (is_file(path)) return path;
-    std::error_code ignored;
-    throw InputError(
-        node.place,
-        fmt::format("{}: {}",
-                    std::filesystem::is_directory(path, ignored) ? "a folder, not a file" : "no such file",
-                    printable(path.string())));
+    return file_named_by(node, fmt::format("\"{}\"", node.key), file_);
   }
 
   /// Meshes and, where they are placed, objects.

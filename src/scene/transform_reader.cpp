@@ -54,8 +54,7 @@ Transform read_step(const JsonNode& node) {
 }
 
 std::vector<Transform> read_transform_file(const JsonNode& node, const std::filesystem::path& scene_file) {
-  const std::filesystem::path path = scene_file.parent_path() / read_string(node, "\"transforms\"");
-  if (!is_file(path)) throw InputError(node.place, "no such file: " + printable(path.string()));
+  const std::filesystem::path path = file_named_by(node, "\"transforms\"", scene_file);
   const std::string text = read_file(path);
   LineReader reader(text, path.string());
   std::vector<Transform> transforms;

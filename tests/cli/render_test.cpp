@@ -253,3 +253,17 @@ TEST_CASE("info tells what a render would choose") {
   CHECK_THAT(run_castray({"info", cornell}, folder.path()).out,
              Contains("kernel     list, diffuse") && Contains("not needed tree"));
 }
+
+TEST_CASE("a flag of a scene's own that is refused late is told with its place") {
+  const TemporaryFolder folder;
+  write_file(folder / "t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write_file(folder / "s.json",
+             "{ \"meshes\": [ { \"obj\": \"t.obj\" } ],\n  \"render\": { \"spp\": 1, \"isa\": \"mmx\" } }\n");
+  const auto err = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", "s.json", "--size", "8x8", "-q", "-o", "x.pfm"});
+    return run_castray(flags, folder.path()).err;
+  };
+  CHECK_THAT(err({}), Catch::StartsWith("castray: error: s.json:2:25: --isa mmx: unknown"));
+  CHECK_THAT(err({"--isa", "sse9"}), Catch::StartsWith("castray: error: --isa sse9: unknown"));
+  CHECK(err({"--isa", "auto"}).empty());
+}

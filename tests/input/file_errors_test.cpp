@@ -139,7 +139,7 @@ const std::vector<Case> cases = {
     {"UTF-16",
      [](const Folder& f) { write(f.folder / "u.json", std::string("\xff\xfe{\0}\0", 6)); },
      {"info", "u.json"},
-     "u.json:1:1: not valid JSON"},
+     "u.json: is UTF-16; save it as UTF-8"},
     {"nested deeply",
      [](const Folder& f) { write(f.folder / "n.json", std::string(1'000'000, '[')); },
      {"info", "n.json"},

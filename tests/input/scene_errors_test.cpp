@@ -336,6 +336,8 @@ const std::vector<Case> cases = {
     // Meshes
     in_mesh("material not found", R"({ "obj": "good.obj", "material": "whit" })",
             "s.json:4:38: material 'whit' not found; did you mean 'white'?"),
+    in_mesh("a zero byte in a name", R"({ "obj": "good.obj\u0000x" })",
+            "s.json:4:14: \"obj\" must not hold a zero byte"),
     in_mesh("missing OBJ file", R"({ "obj": "gone.obj" })", "s.json:4:14: no such file: gone.obj"),
     in_mesh("OBJ is a folder", R"({ "obj": "." })", "s.json:4:14: a folder, not a file: ."),
     in_mesh("scale 0", R"({ "obj": "good.obj", "transform": [ { "scale": [1,0,1] } ] })",
@@ -413,7 +415,13 @@ const std::vector<Case> cases = {
            std::string("\x7f"
                        "ELF\0\0\1\2\n\xff\xfe",
                        12),
-           "o.obj: no faces, so that the scene has no triangle"),
+           "o.obj: is binary, not a text; is it another format?"),
+    in_obj("packed by gzip", "\x1f\x8b\x08 ...", "o.obj: is packed by gzip; unpack it first"),
+    in_obj("packed by zip", "PK\x03\x04 ...", "o.obj: is packed by zip; unpack it first"),
+    in_obj("in capitals", "V 0 0 0\nV 1 0 0\nV 0 1 0\nF 1 2 3\n",
+           "o.obj:1: a statement in capitals means nothing; write v, vn, vt and f"),
+    {"a packed scene file", {{"s.json", "\x1f\x8b\x08 ..."}}, "s.json: is packed by gzip; unpack it first"},
+    {"a packed PLY file", {{"t.ply", "\x1f\x8b\x08 ..."}}, "t.ply: is packed by gzip; unpack it first"},
     in_obj("all flat", three + "f 1 1 2\nf 1 2 2\n",
            "o.obj: the scene has no triangle left: all 2 are degenerate (no area, or coordinates that are "
            "not finite)"),

@@ -93,6 +93,14 @@ const std::vector<Case> cases = {
      dark,
      {},
      {"m.mtl:1: newmtl without a name"}},
+    {"newmtl twice of one name",
+     {{"o.obj", face("mtllib m.mtl\nusemtl m\n")}, {"m.mtl", dark_mtl + "newmtl m\nKd 1 1 1\nnewmtl m\n"}},
+     dark,
+     {"m.mtl:3: newmtl of a name that is there already: the first material of it counts (2 times)"}},
+    {"capitals beside what is meant",
+     {{"o.obj", face("mtllib m.mtl\nusemtl m\nV 1 2 3\n") + "F 1 2 3\n"}, {"m.mtl", dark_mtl}},
+     dark,
+     {"o.obj:3: a statement in capitals means nothing; write v, vn, vt and f (2 times)"}},
     {"unused names matter to nobody",
      {{"o.obj", "mtllib m.mtl\nusemtl other\n" + face("usemtl m\n")}, {"m.mtl", dark_mtl}},
      dark,
@@ -317,4 +325,24 @@ TEST_CASE("meshes of one file share it and its materials") {
                     "usemtl of a material that is in no library that was found; the default, grey, is used",
                     "has no faces"});
   CHECK(scene.to_world(Vec3d(scene.positions[scene.triangles[49][0]])).x == Approx(49));
+}
+
+TEST_CASE("replaced materials that a mesh does not have are told, with what it has") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "o.obj") << "mtllib m.mtl\nusemtl wood\n" + face("");
+  std::ofstream(folder / "m.mtl") << "newmtl wood\n";
+  std::ofstream(folder / "t.ply")
+      << "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  std::ofstream(folder / "s.json") << R"({ "materials": { "a": { "type": "diffuse" } }, "meshes": [
+    { "obj": "o.obj", "materials": { "wod": "a" } },
+    { "obj": "o.obj", "materials": { "wood": "a" } },
+    { "ply": "t.ply", "materials": { "wood": "a" } } ] })";
+  std::vector<std::string> told;
+  for (const SceneWarning& warning : load_scene(folder / "s.json").warnings)
+    told.push_back(std::to_string(warning.place.line) + ": " + warning.message);
+  CHECK(told == std::vector<std::string>{
+                    "2: \"materials\": no triangle of the mesh has a material 'wod'; did you mean 'wood'?",
+                    "4: \"materials\": no triangle of the mesh has a material 'wood'; its file names none"});
 }
