@@ -92,6 +92,23 @@ struct DeltaList {
   uint32_t count;
 };
 
+/// The image of a light in a flat mirror: a parallelogram behind it, larger by what a rough mirror blurs.
+struct MirroredLight {
+  float origin[3], edge1[3], edge2[3];
+  float across1[3], across2[3];  ///< a point p of it has the coordinates dot(across, p - origin), in [0,1]
+  float normal[3];               ///< unit; the side that shines
+  float center[3], radius;       ///< of a sphere around it
+  float area, power;             ///< power: of the light, over the greatest one's
+  float plane[3], offset;        ///< of the mirror: it reflects the light to where dot(plane, p) > offset
+  float mirror_center[3], mirror_half[3];  ///< the mirror's bounding box
+  uint32_t two_sided;
+};
+inline constexpr int most_mirrored_lights = 8;
+struct MirroredLightList {
+  const MirroredLight* lights;
+  int count;
+};
+
 struct MaterialTables;
 struct TriangleTable;
 
@@ -119,6 +136,7 @@ struct LightList {
   const TriangleTable* triangles;   ///< likewise
   CellTable cells;
   LightRegions regions;
+  MirroredLightList mirrored;
 };
 
 /// Choices of a light for one opaque surface point, by the numbers u and deep of choose_light.

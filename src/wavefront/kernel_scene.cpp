@@ -3,6 +3,7 @@
 #include "cameras/camera.h"
 #include "lights/covered_lights.h"
 #include "lights/delta_lights.h"
+#include "lights/mirrored_lights.h"
 #include "materials/surface_values.h"
 
 namespace castray {
@@ -79,6 +80,8 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.geometry.tree.triangles = triangle_table(scene, material_words);
     view.geometry.tree.partial = partial_triangles(coverage);
   }
+  if (plan.light_paths) mirrored = mirrored_lights(scene, lights.lights());
+  view.lights.mirrored = {mirrored.data(), static_cast<int>(mirrored.size())};
   view.lights.by_solid_angle = plan.lights_by_solid_angle;
   view.lights.environment = environment.table();
   view.lights.deltas = {deltas.data(), static_cast<std::uint32_t>(deltas.size())};

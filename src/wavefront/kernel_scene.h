@@ -36,6 +36,7 @@ struct KernelSceneData {
   Coverage coverage;
   KernelMaterials materials;
   LightTable lights;
+  std::vector<MirroredLight> mirrored;
   Environment environment;
   std::vector<KernelDelta> deltas;
   KernelScene view{};

@@ -2,6 +2,7 @@
 
 #include "lights/light_share_lanes.h"
 #include "wavefront/absorption_lanes.h"
+#include "wavefront/guided_lanes.h"
 #include "wavefront/light_points_lanes.h"
 #include "wavefront/shading_lanes.h"
 
@@ -15,10 +16,10 @@ CASTRAY_INLINE Float light_density(const LightList& lights, const LightPoint& po
   return select(point.infinite, point.density, point.density * relative);
 }
 
-/// A light point for each vertex, as a shadow ray with its MIS-weighted radiance. `point_of(i)`: those of
-/// vertices i to i + width - 1.
+/// A light point for each vertex, which is number `vertex` of its path, as a shadow ray with its MIS-weighted
+/// radiance. `point_of(i)`: those of vertices i to i + width - 1.
 template <class Geometry, uint32_t features, class PointOf>
-CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, PointOf point_of,
+CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, uint32_t vertex, PointOf point_of,
                                 ShadowRays& out) {
   out.count = 0;
   const LightList& lights = c.scene.lights;
@@ -33,7 +34,7 @@ CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, Poin
       const Vec local = to_local(shading.frame, wi);
       const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
       f_cos = select(shading.consistent(wi, local), value.f_cos, black());
-      pdf = value.pdf;
+      pdf = pdf_with_guide(c, vertices, i, guided_at(c, vertices, i, vertex), wi, value.pdf);
       p = leave(vertices, i, wi);
       normal = normal_towards(vertices, i, wi);
     } else {
@@ -66,7 +67,7 @@ CASTRAY_STAGE void light(const Context& c, const Vertices& vertices, uint32_t ve
       if (vertex > 0) point.weight = select(leaves_lamps(c, vertices, i), black(), point.weight);
     return point;
   };
-  shadow_rays<Geometry, features>(c, vertices, point_of, out);
+  shadow_rays<Geometry, features>(c, vertices, vertex, point_of, out);
 }
 
 /// Light sampling: a direction to the environment for each vertex.
@@ -74,7 +75,7 @@ template <class Geometry, uint32_t features>
 CASTRAY_STAGE void light_environment(const Context& c, const Vertices& vertices, uint32_t vertex,
                                      ShadowRays& out) {
   shadow_rays<Geometry, features>(
-      c, vertices, [&](int i) { return vertex_environment_points(c, vertices, i, vertex); }, out);
+      c, vertices, vertex, [&](int i) { return vertex_environment_points(c, vertices, i, vertex); }, out);
 }
 
 /// Light sampling: a light without size for each vertex that is on a surface.
@@ -82,7 +83,7 @@ template <class Geometry, uint32_t features>
 CASTRAY_STAGE void light_deltas(const Context& c, const Vertices& vertices, uint32_t vertex,
                                 ShadowRays& out) {
   shadow_rays<Geometry, features>(
-      c, vertices, [&](int i) { return vertex_delta_lights(c, vertices, i, vertex); }, out);
+      c, vertices, vertex, [&](int i) { return vertex_delta_lights(c, vertices, i, vertex); }, out);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "wavefront/absorption_lanes.h"
+#include "wavefront/guided_lanes.h"
 #include "wavefront/light_normals_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/shading_lanes.h"
@@ -66,7 +67,9 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
         if (transport != Transport::from_camera)
           normal = choose_normal(kept, load(vertices.normal, i), wo, n.u[2]);
       const Shading shading = shading_of<features>(c.scene, vertices, i, normal.n);
-      const BsdfSample s = sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
+      const BsdfSample s = transport == Transport::from_camera
+                               ? sample_guided(c, vertices, i, vertex, shading, choice.u[1], n.u[0], n.u[1])
+                               : sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
       wi = to_world(shading.frame, s.wi);
       throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
       const Mask focuses = s.specular | has_traits(c.scene, records_of(vertices, i), trait_focuses);

@@ -168,6 +168,16 @@ TEST_CASE("what polished metal and rough glass throw is found by paths from ligh
   }
 }
 
+TEST_CASE("what mirrors show of each other's caustics is found by the images of lamps in them",
+          "[statistical]") {
+  const Scene scene = standard_scene("kinds/facing_mirrors");
+  RenderOptions by_light = plain(wavefront_options(16));
+  by_light.caustics = Switch::on;
+  RenderOptions by_chance = by_light;
+  by_chance.caustics = Switch::off;
+  CHECK(relative_variance(scene, by_light) < 0.15 * relative_variance(scene, by_chance));
+}
+
 TEST_CASE("the wavefront agrees with castRay on textures, smooth normals and an environment",
           "[statistical]") {
   check_scene("diffuse detail", with_detail(standard_scene("cornell_box")));
