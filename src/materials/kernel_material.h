@@ -80,15 +80,14 @@ struct KernelMaterial {
 };
 inline constexpr int material_floats = sizeof(KernelMaterial) / sizeof(float);
 
-/// Where a pixel's footprint is probed (materials/footprint.h): a (0,2)-net of the unit square.
+/// Where a pixel's footprint is probed (materials/footprint.h): a (0,2)-net of the unit square. Each kernel
+/// has a table of its own.
 inline constexpr int footprint_probes = 16;
-inline constexpr float footprint_probe[footprint_probes][2] = {
+constexpr float footprint_probe[footprint_probes][2] = {
     {0 / 16.f, 0 / 16.f},  {1 / 16.f, 8 / 16.f},   {2 / 16.f, 4 / 16.f},  {3 / 16.f, 12 / 16.f},
     {4 / 16.f, 2 / 16.f},  {5 / 16.f, 10 / 16.f},  {6 / 16.f, 6 / 16.f},  {7 / 16.f, 14 / 16.f},
     {8 / 16.f, 1 / 16.f},  {9 / 16.f, 9 / 16.f},   {10 / 16.f, 5 / 16.f}, {11 / 16.f, 13 / 16.f},
     {12 / 16.f, 3 / 16.f}, {13 / 16.f, 11 / 16.f}, {14 / 16.f, 7 / 16.f}, {15 / 16.f, 15 / 16.f}};
-/// A point of a footprint counts as no more than so many times as far away as its middle.
-inline constexpr float footprint_farthest = 16;
 
 /// Of Footprint: the far end of what a pixel sees counts as no more than 16 times as far away as its middle.
 inline constexpr float least_nearing = 1 / 16.f;
