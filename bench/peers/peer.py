@@ -25,13 +25,18 @@ def parse(description, add_options=lambda parser: None):
     return arguments, scene
 
 
-def finish(arguments, pixels, seconds):
-    """Writes the image (height, width, 3; top row first) and says how long the render alone took."""
-    partial = f"{arguments.out}.{os.getpid()}.tmp"
+def write_pfm(name, pixels):
+    """Writes pixels (height, width, 3; top row first)."""
+    partial = f"{name}.{os.getpid()}.tmp"
     with open(partial, "wb") as file:
         height, width, _ = pixels.shape
         file.write(f"PF\n{width} {height}\n-1.0\n".encode())
         file.write(np.ascontiguousarray(pixels[::-1], dtype="<f4").tobytes())
-    os.replace(partial, arguments.out)
+    os.replace(partial, name)
+
+
+def finish(arguments, pixels, seconds):
+    """Writes the image and says how long the render alone took."""
+    write_pfm(arguments.out, pixels)
     print(f"seconds: {seconds:.6f}")
     sys.stdout.flush()
