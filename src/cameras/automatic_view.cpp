@@ -6,6 +6,7 @@
 
 #include "castray/scene.h"
 #include "core/box.h"
+#include "core/triangle_corners.h"
 
 namespace castray {
 
@@ -18,30 +19,24 @@ struct SurfacePoint {
   Vec3d position, normal;
 };
 
-Vec3d area_vector(const Scene& scene, std::uint32_t triangle) {
-  const Index3& t = scene.triangles[triangle];
-  const Vec3d a(scene.positions[t[0]]);
-  return cross(Vec3d(scene.positions[t[1]]) - a, Vec3d(scene.positions[t[2]]) - a) * 0.5;
-}
-
 /// About `count` points of the triangles first .. last as `triangle_of` numbers them, evenly by area: each
 /// triangle has one each time the area so far passes another multiple of a count-th of all.
 template <class TriangleOf>
 std::vector<SurfacePoint> sample_surface(const Scene& scene, std::size_t triangles, int count,
                                          const TriangleOf& triangle_of) {
   double area = 0;
-  for (std::size_t i = 0; i < triangles; ++i) area += length(area_vector(scene, triangle_of(i)));
+  for (std::size_t i = 0; i < triangles; ++i)
+    area += length(corners_of(scene, triangle_of(i)).twice_area() * 0.5);
   const double step = area / count;
   std::vector<SurfacePoint> points;
   if (!(step > 0)) return points;
   double passed = 0, next = step / 2;
   for (std::size_t i = 0; i < triangles; ++i) {
-    const std::uint32_t triangle = triangle_of(i);
-    const Vec3d vector = area_vector(scene, triangle);
+    const TriangleCorners corners = corners_of(scene, triangle_of(i));
+    const auto& [a, b, c] = corners;
+    const Vec3d vector = corners.twice_area() * 0.5;
     const double size = length(vector);
     passed += size;
-    const Index3& t = scene.triangles[triangle];
-    const Vec3d a(scene.positions[t[0]]), b(scene.positions[t[1]]), c(scene.positions[t[2]]);
     for (; next < passed; next += step) {
       // A sequence of low discrepancy (Roberts 2018) on the unit square, folded onto the triangle.
       const auto number = static_cast<double>(points.size());

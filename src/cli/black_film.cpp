@@ -4,23 +4,13 @@
 #include <vector>
 
 #include "core/threads.h"
+#include "core/triangle_corners.h"
 #include "geometry/bvh.h"
 #include "geometry/list.h"
 
 namespace castray::cli {
 
 namespace {
-
-struct Corners {
-  Vec3d a, b, c;
-  Vec3d normal() const { return cross(b - a, c - a); }
-  Vec3d middle() const { return (a + b + c) / 3; }
-};
-
-Corners corners_of(const Scene& scene, std::uint32_t triangle) {
-  const Index3& t = scene.triangles[triangle];
-  return {Vec3d(scene.positions[t[0]]), Vec3d(scene.positions[t[1]]), Vec3d(scene.positions[t[2]])};
-}
 
 /// What a few rays from the camera meet.
 struct Counts {
@@ -43,15 +33,15 @@ Counts count(const Scene& scene) {
     const Vec3d direction = normalize(ray.direction);
     const Hit<double> hit = bvh.closest(Ray<double>{ray.origin, direction});
     if (!hit.found()) continue;
-    const Vec3d normal = corners_of(scene, hit.triangle).normal();
+    const Vec3d normal = corners_of(scene, hit.triangle).twice_area();
     const double towards_camera = dot(normal, direction) > 0 ? -1 : 1;
     const Vec3d p = ray.origin + direction * (hit.t * (1 - 1e-6));
     bool facing = false, reached = false;
     for (std::size_t l = 0; l < scene.lights.size(); l += step) {
-      const Corners light = corners_of(scene, scene.lights[l]);
+      const TriangleCorners light = corners_of(scene, scene.lights[l]);
       const Vec3d to_light = light.middle() - p;
       const bool shines_here =
-          scene.material_of(scene.lights[l]).two_sided_emission || dot(light.normal(), to_light) < 0;
+          scene.material_of(scene.lights[l]).two_sided_emission || dot(light.twice_area(), to_light) < 0;
       if (!shines_here || !(dot(normal, to_light) * towards_camera > 0)) continue;
       facing = true;
       reached |= !bvh.occluded(Ray<double>{p, to_light, 1 - 1e-6});

@@ -3,23 +3,10 @@
 #include <algorithm>
 
 #include "core/error_bounds.h"
+#include "core/triangle_corners.h"
 #include "materials/surface_values.h"
 
 namespace castray {
-
-namespace {
-
-struct Corners {
-  Vec3d v0, v1, v2;
-  Vec3d twice_area() const { return cross(v1 - v0, v2 - v0); }
-};
-
-Corners corners(const Scene& scene, std::uint32_t triangle) {
-  const Index3& t = scene.triangles[triangle];
-  return {Vec3d(scene.positions[t[0]]), Vec3d(scene.positions[t[1]]), Vec3d(scene.positions[t[2]])};
-}
-
-}  // namespace
 
 template <class T>
 AreaLights<T>::AreaLights(const Scene& scene)
@@ -27,14 +14,14 @@ AreaLights<T>::AreaLights(const Scene& scene)
   double power = 0;
   std::vector<double> powers;
   for (const std::uint32_t i : scene.lights) {
-    const Corners c = corners(scene, i);
+    const TriangleCorners c = corners_of(scene, i);
     const Material& material = scene.material_of(i);
     const Vec3d normal = c.twice_area();
     for (const EmissionCell& cell : cells_.of(i)) {
       powers.push_back(length(normal) / 2 * cell.step * cell.step * luminance(cell.emission));
       power += powers.back();
       cumulative_.push_back(power);
-      triangles_.push_back({Vec3<T>(c.v0), Vec3<T>(c.v1), Vec3<T>(c.v2), Vec3<T>(normalize(normal)),
+      triangles_.push_back({Vec3<T>(c.a), Vec3<T>(c.b), Vec3<T>(c.c), Vec3<T>(normalize(normal)),
                             Vec3<T>(material.ke * material.coverage), T(0),
                             TrianglePlace<T>{i, T(cell.b1), T(cell.b2)}, T(cell.step),
                             material.two_sided_emission});

@@ -1,10 +1,12 @@
 #include "lights/mirrored_lights.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
+#include "core/box.h"
+#include "core/put.h"
+#include "core/triangle_corners.h"
 #include "materials/descriptor.h"
 
 namespace castray {
@@ -33,19 +35,10 @@ struct Mirror {
   double offset;
   std::uint16_t material;
   double area = 0;
-  Vec3d low, high;  ///< its bounding box
+  Box3d bounds{};
 
   bool holds(const Vec3d& p, double tolerance) const { return std::abs(dot(normal, p) - offset) < tolerance; }
 };
-
-using Corners = std::array<Vec3d, 3>;
-
-Corners corners_of(const Scene& scene, std::uint32_t triangle) {
-  const Index3& t = scene.triangles[triangle];
-  return {Vec3d(scene.positions[t[0]]), Vec3d(scene.positions[t[1]]), Vec3d(scene.positions[t[2]])};
-}
-
-Vec3d area_vector(const Corners& c) { return cross(c[1] - c[0], c[2] - c[0]) * 0.5; }
 
 bool reflects(const Material& m) {
   const std::uint32_t traits = traits_of(m);
@@ -56,37 +49,32 @@ std::vector<std::uint32_t> reflecting_triangles(const Scene& scene) {
   std::vector<bool> is_mirror;
   for (const Material& m : scene.materials) is_mirror.push_back(reflects(m));
   return greatest(scene.triangles.size(), most_triangles, [&](std::uint32_t i) {
-    return is_mirror[scene.triangle_material[i]] ? length(area_vector(corners_of(scene, i))) : 0;
+    return is_mirror[scene.triangle_material[i]] ? length(corners_of(scene, i).twice_area()) : 0;
   });
 }
 
-void grow(Mirror& mirror, const Corners& triangle) {
-  mirror.area += length(area_vector(triangle));
-  for (const Vec3d& p : triangle)
-    for (int c = 0; c < 3; ++c) {
-      mirror.low[c] = std::min(mirror.low[c], p[c]);
-      mirror.high[c] = std::max(mirror.high[c], p[c]);
-    }
+void grow(Mirror& mirror, const TriangleCorners& triangle) {
+  mirror.area += length(triangle.twice_area()) / 2;
+  for (const Vec3d& p : triangle.all()) mirror.bounds.add(p);
 }
 
 std::vector<Mirror> flat_mirrors(const Scene& scene) {
   constexpr double flat = 1e-4;  // of a triangle's size
   std::vector<Mirror> mirrors;
   for (const std::uint32_t i : reflecting_triangles(scene)) {
-    const Corners triangle = corners_of(scene, i);
-    const Vec3d across = area_vector(triangle);
-    const double area = length(across);
+    const TriangleCorners triangle = corners_of(scene, i);
+    const double twice_area = length(triangle.twice_area());
     const std::uint16_t material = scene.triangle_material[i];
     const auto same = std::ranges::find_if(mirrors, [&](const Mirror& m) {
-      return m.material == material && std::ranges::all_of(triangle, [&](const Vec3d& p) {
-               return m.holds(p, flat * std::sqrt(area));
+      return m.material == material && std::ranges::all_of(triangle.all(), [&](const Vec3d& p) {
+               return m.holds(p, flat * std::sqrt(twice_area / 2));
              });
     });
     if (same != mirrors.end()) {
       grow(*same, triangle);
     } else if (mirrors.size() < most_mirrors) {
-      const Vec3d normal = across / area;
-      mirrors.push_back({normal, dot(normal, triangle[0]), material, 0, triangle[0], triangle[0]});
+      const Vec3d normal = triangle.twice_area() / twice_area;
+      mirrors.push_back({normal, dot(normal, triangle.a), material});
       grow(mirrors.back(), triangle);
     }
   }
@@ -94,10 +82,6 @@ std::vector<Mirror> flat_mirrors(const Scene& scene) {
 }
 
 Vec3d vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-void put(float (&to)[3], const Vec3d& v) {
-  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(v[c]);
-}
 
 /// The vector that has a dot product of 1 with `edge`, and of 0 with `other` and `normal`.
 Vec3d across(const Vec3d& edge, const Vec3d& other, const Vec3d& normal) {
@@ -139,8 +123,8 @@ MirroredLight image_in(const Mirror& mirror, const KernelLight& light, double al
   image.area = static_cast<float>(length(cross(edge1, edge2)));
   put(image.plane, mirror.normal);
   image.offset = static_cast<float>(mirror.offset);
-  put(image.mirror_center, (mirror.low + mirror.high) * 0.5);
-  put(image.mirror_half, (mirror.high - mirror.low) * 0.5);
+  put(image.mirror_center, (mirror.bounds.lower + mirror.bounds.upper) * 0.5);
+  put(image.mirror_half, (mirror.bounds.upper - mirror.bounds.lower) * 0.5);
   image.two_sided = light.two_sided;
   return image;
 }

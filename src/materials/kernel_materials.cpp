@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/put.h"
 #include "materials/conductor.h"
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
@@ -33,10 +34,6 @@ float pack(double first, double second) {
   return std::bit_cast<float>(bits(first) | bits(second) << 16);
 }
 
-void copy(const Vec3d& from, float (&to)[3]) {
-  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(from[c]);
-}
-
 }  // namespace
 
 KernelMaterials::KernelMaterials(const Scene& scene) {
@@ -48,9 +45,9 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   KernelMaterial k{};
   k.coverage = static_cast<float>(m.coverage);
   k.ior = static_cast<float>(m.ior);
-  copy(m.eta, k.eta);
-  copy(m.k, k.k);
-  copy(m.absorption * scene.unit, k.absorption);
+  put(k.eta, m.eta);
+  put(k.k, m.k);
+  put(k.absorption, m.absorption * scene.unit);
   if (m.type == MaterialType::dielectric) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
   k.back = static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : materials.size()) *
            material_floats;
@@ -86,7 +83,7 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   detail.albedo_rows = k.albedo_rows;
   detail.clearcoat_rows = k.clearcoat_rows;
   detail.multiple_scattering = has_lobe_table(m) && m.multiple_scattering;
-  if (m.has_index()) copy(mean_fresnel(m), detail.mean_fresnel);
+  if (m.has_index()) put(detail.mean_fresnel, mean_fresnel(m));
   std::transform(values.begin(), values.begin() + vertex_floats, k.value,
                  [](double v) { return static_cast<float>(v); });
   k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
