@@ -42,8 +42,9 @@ class DifferenceSums {
   /// What is summed of a pixel: its radiance, and how much greater that of a neighbour is.
   enum Term { own, right, below };
   static constexpr int terms = 3, channels = 3;
-  static constexpr std::size_t bytes_of_pixel =
-      halves * terms * (channels * sizeof(std::int64_t) + sizeof(std::uint32_t));
+  static constexpr std::size_t bytes_of_counts = halves * terms * sizeof(std::uint32_t),
+                               bytes_of_sums = halves * terms * channels * sizeof(std::int64_t),
+                               bytes_of_pixel = bytes_of_sums + bytes_of_counts;
 
   DifferenceSums() = default;
   DifferenceSums(int width, int height, double scale);

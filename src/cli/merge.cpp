@@ -11,6 +11,7 @@
 #include "cli/display_flags.h"
 #include "cli/film_bands.h"
 #include "cli/memory_limit.h"
+#include "cli/memory_need.h"
 #include "core/threads.h"
 
 namespace castray::cli {
@@ -53,26 +54,32 @@ struct Merge {
     return memory_limit.empty() ? share_of_memory() : parse_bytes("memory-limit", memory_limit);
   }
 
-  /// What is in memory of `films` films like the first, in their rows, and of their image.
-  static std::uint64_t bytes_of_rows(const Film& first, std::uint64_t films, int width, int rows) {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(rows);
-    return films * bytes_of_film(first, pixels) + bytes_of_image(first, width, rows, available_threads());
+  /// What `films` films like the first take in a window of this size, and their image.
+  static MemoryNeed need_of(Film first, std::uint64_t films, int width, int height) {
+    MemoryNeed need;
+    need.scene = bytes_of_program();
+    need.films = films;
+    need.width = width;
+    need.height = height;
+    need.threads = available_threads();
+    need.like = std::move(first);
+    return need;
   }
 
   /// Whether the sum, one film besides, its file and the image have room in memory.
   bool fits() const {
-    const Film first = read_film_header(inputs.front());
-    const Window& w = first.window();
-    return bytes_of_program() + bytes_of_rows(first, 3, w.full_width, w.full_height) <= most_bytes();
+    Film first = read_film_header(inputs.front());
+    const Window w = first.window();
+    return need_of(std::move(first), 3, w.full_width, w.full_height).all() <= most_bytes();
   }
 
-  int band_of(const Film& first, const Window& window, int margin) const {
-    const std::uint64_t most = most_bytes(), program = std::min(bytes_of_program(), most);
-    const auto bytes = [&](int rows) { return bytes_of_rows(first, 2, window.width(), rows); };
-    if (const auto band = band_within(most - program, margin, window.height(), bytes)) return *band;
-    const int least = least_band(margin, window.height());
+  int band_of(const MemoryNeed& need) const {
+    const std::uint64_t most = most_bytes(), program = std::min(need.fixed(), most);
+    const auto bytes = [&](int rows) { return need.rows(rows); };
+    if (const auto band = band_within(most - program, need.margin(), need.height, bytes)) return *band;
+    const int least = least_band(need.margin(), need.height);
     if (memory_limit.empty()) return least;
-    const std::uint64_t needed = bytes_of_program() + bytes(std::min(least + 2 * margin, window.height()));
+    const std::uint64_t needed = need.in_least_bands();
     throw InputError(more_is_needed(
         most, fmt::format("{} rows of two films and their image take {}", least, bytes_text(needed)),
         needed));
@@ -81,11 +88,10 @@ struct Merge {
   int merge_in_bands(const Display& display, const CommonFlags& common) const {
     const MergedRows merged(inputs);
     if (!merged.missing().empty()) tell_missing(merged.missing());
-    const Film first = read_film_header(inputs.front());
     const Window window = merged.window();
-    const int margin = first.differences().kept() ? reconstruction_margin : 0;
+    const MemoryNeed need = need_of(read_film_header(inputs.front()), 2, window.width(), window.height());
     Film part;
-    const BandedFilm film{window, band_of(first, window, margin), margin, [&](int y0, int y1) -> const Film& {
+    const BandedFilm film{window, band_of(need), need.margin(), [&](int y0, int y1) -> const Film& {
                             part = {};  // its memory is needed
                             return part = merged.rows(y0, y1);
                           }};

@@ -318,25 +318,29 @@ std::uint64_t Film::missing_samples() const {
   return missing_samples(std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0}));
 }
 
-std::size_t bytes_of_pixel(const Film& film) {
+namespace {
+
+/// Of a pixel, in each of the arrays that a film keeps.
+std::vector<std::size_t> bytes_by_array(const Film& film) {
   constexpr std::size_t radiance = 3 * 2 * sizeof(double);
-  return radiance + sizeof(std::uint32_t) + (film.keeps_splats() ? radiance + sizeof(std::uint64_t) : 0) +
-         (film.differences().kept() ? DifferenceSums::bytes_of_pixel : 0);
+  std::vector<std::size_t> bytes{radiance, sizeof(std::uint32_t)};
+  if (film.keeps_splats()) bytes.insert(bytes.end(), {radiance, sizeof(std::uint64_t)});
+  if (film.differences().kept())
+    bytes.insert(bytes.end(), {DifferenceSums::bytes_of_sums, DifferenceSums::bytes_of_counts});
+  return bytes;
+}
+
+}  // namespace
+
+std::size_t bytes_of_pixel(const Film& film) {
+  const std::vector<std::size_t> bytes = bytes_by_array(film);
+  return std::accumulate(bytes.begin(), bytes.end(), std::size_t{0});
 }
 
 std::uint64_t bytes_of_film(const Film& like, std::uint64_t pixels) {
-  const auto blocks = [pixels](std::initializer_list<std::size_t> bytes_of_pixel) {
-    std::uint64_t sum = 0;
-    for (const std::size_t bytes : bytes_of_pixel) sum += bytes_in_large_pages(bytes * pixels);
-    return sum;
-  };
-  constexpr std::size_t sums = 3 * 2 * sizeof(double),
-                        terms = std::size_t{DifferenceSums::halves} * DifferenceSums::terms;
-  return blocks({sums, sizeof(std::uint32_t)}) +
-         (like.keeps_splats() ? blocks({sums, sizeof(std::uint64_t)}) : 0) +
-         (like.differences().kept() ? blocks({terms * DifferenceSums::channels * sizeof(std::int64_t),
-                                              terms * sizeof(std::uint32_t)})
-                                    : 0);
+  std::uint64_t sum = 0;
+  for (const std::size_t bytes : bytes_by_array(like)) sum += bytes_in_large_pages(bytes * pixels);
+  return sum;
 }
 
 std::string samples_text(double samples_per_pixel) {

@@ -33,14 +33,12 @@ static_assert(magic.size() == magic_of_differences.size());
 constexpr std::uint64_t max_side = 1 << 24;
 using nlohmann::json;
 
-std::uint32_t checksum(std::string_view bytes) {
+/// Of bytes, behind others of which it is `before`.
+std::uint32_t checksum(std::string_view bytes, std::uint32_t before = 0) {
+  if (bytes.empty()) return before;  // whose place may be null, with which zlib begins anew
   return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+      crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
-
-}  // namespace
-
-namespace {
 
 /// Passes bytes on, and knows the checksum of all so far.
 class ChecksummedStream {
@@ -48,15 +46,14 @@ class ChecksummedStream {
   explicit ChecksummedStream(std::ostream& out) : out_(out) {}
 
   void write(std::string_view bytes) {
-    if (bytes.empty()) return;  // whose place may be null, with which zlib begins anew
-    sum_ = crc32_z(sum_, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    sum_ = castray::checksum(bytes, sum_);
     out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
-  std::uint32_t checksum() const { return static_cast<std::uint32_t>(sum_); }
+  std::uint32_t checksum() const { return sum_; }
 
  private:
   std::ostream& out_;
-  uLong sum_ = crc32_z(0, nullptr, 0);
+  std::uint32_t sum_ = 0;
 };
 
 }  // namespace
