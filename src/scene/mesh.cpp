@@ -34,10 +34,32 @@ void append_indices(std::vector<Index3>& all, std::size_t triangles, const std::
   all.resize(triangles + more_triangles, no_indices);
 }
 
+template <class T>
+void keep_marked(std::vector<T>& values, const std::vector<bool>& keep) {
+  if (values.empty()) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (keep[i]) values[kept++] = values[i];
+  values.resize(kept);
+}
+
+/// Moves each object to its first triangle that is kept.
+void keep_objects(std::vector<SceneObject>& objects, const std::vector<bool>& keep) {
+  auto from = keep.begin();
+  std::uint32_t kept = 0;
+  for (SceneObject& object : objects) {
+    const auto first = keep.begin() + object.first_triangle;
+    kept += static_cast<std::uint32_t>(std::count(from, first, true));
+    from = first;
+    object.first_triangle = kept;
+  }
+}
+
 }  // namespace
 
-bool is_in_reach(const Vec3d& p) {
-  return coordinate_range.contains(p.x) && coordinate_range.contains(p.y) && coordinate_range.contains(p.z);
+bool is_in_reach(const Vec3d& p) {  // of every corner that is read: no call for each coordinate
+  return std::abs(p.x) <= farthest_coordinate && std::abs(p.y) <= farthest_coordinate &&
+         std::abs(p.z) <= farthest_coordinate;
 }
 
 std::optional<TriangleFault> fault_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -67,6 +89,16 @@ void append(Mesh& all, Mesh&& more) {
     object.first_triangle += static_cast<std::uint32_t>(triangles);
     all.objects.push_back(std::move(object));
   }
+}
+
+void keep_triangles(Mesh& mesh, const std::vector<bool>& keep) {
+  if (std::ranges::find(keep, false) == keep.end()) return;
+  keep_objects(mesh.objects, keep);
+  keep_marked(mesh.triangles, keep);
+  keep_marked(mesh.triangle_material, keep);
+  keep_marked(mesh.triangle_normals, keep);
+  keep_marked(mesh.triangle_uvs, keep);
+  keep_marked(mesh.triangle_colors, keep);
 }
 
 }  // namespace castray

@@ -39,6 +39,28 @@ struct Mesh {
 /// Adds the triangles of `more` behind those of `all`. No index may grow beyond 32 bits.
 void append(Mesh& all, Mesh&& more);
 
+/// Leaves only the triangles that are marked.
+void keep_triangles(Mesh& mesh, const std::vector<bool>& keep);
+
+/// Leaves only the positions that triangles use.
+template <class Point>
+void drop_unused(std::vector<Point>& positions, std::vector<Index3>& triangles) {
+  constexpr std::uint32_t used = 0;
+  std::vector<std::uint32_t> renumbered(positions.size(), Scene::no_index);
+  for (const Index3& corners : triangles)
+    for (std::uint32_t i : corners) renumbered[i] = used;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < renumbered.size(); ++i) {
+    if (renumbered[i] == Scene::no_index) continue;
+    positions[count] = positions[i];
+    renumbered[i] = count++;
+  }
+  if (count == renumbered.size()) return;
+  positions.resize(count);
+  for (Index3& corners : triangles)
+    for (std::uint32_t& i : corners) i = renumbered[i];
+}
+
 inline constexpr Index3 no_indices{Scene::no_index, Scene::no_index, Scene::no_index};
 
 }  // namespace castray

@@ -20,43 +20,12 @@ namespace castray {
 
 namespace {
 
-template <class T>
-void keep_marked(std::vector<T>& values, const std::vector<bool>& keep) {
-  if (values.empty()) return;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (keep[i]) values[kept++] = values[i];
-  values.resize(kept);
-}
-
 /// Gives what has no name that of its file.
 void name_objects(Mesh& mesh, const std::string& file) {
   if (mesh.objects.empty() || mesh.objects.front().first_triangle > 0)
     mesh.objects.insert(mesh.objects.begin(), SceneObject{});
   for (SceneObject& object : mesh.objects)
     if (object.name.empty()) object.name = file;
-}
-
-/// Moves each object to its first triangle that is kept.
-void keep_objects(std::vector<SceneObject>& objects, const std::vector<bool>& keep) {
-  auto from = keep.begin();
-  std::uint32_t kept = 0;
-  for (SceneObject& object : objects) {
-    const auto first = keep.begin() + object.first_triangle;
-    kept += static_cast<std::uint32_t>(std::count(from, first, true));
-    from = first;
-    object.first_triangle = kept;
-  }
-}
-
-void keep_marked(Mesh& mesh, const std::vector<bool>& keep) {
-  if (std::ranges::find(keep, false) == keep.end()) return;
-  keep_objects(mesh.objects, keep);
-  keep_marked(mesh.triangles, keep);
-  keep_marked(mesh.triangle_material, keep);
-  keep_marked(mesh.triangle_normals, keep);
-  keep_marked(mesh.triangle_uvs, keep);
-  keep_marked(mesh.triangle_colors, keep);
 }
 
 template <class T, class Predicate>
@@ -77,25 +46,6 @@ struct Space {
   Vec3d center;
   double unit = 1;
 };
-
-/// Leaves only the positions that triangles use.
-template <class Point>
-void drop_unused(std::vector<Point>& positions, std::vector<Index3>& triangles) {
-  constexpr std::uint32_t used = 0;
-  std::vector<std::uint32_t> renumbered(positions.size(), Scene::no_index);
-  for (const Index3& corners : triangles)
-    for (std::uint32_t i : corners) renumbered[i] = used;
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < renumbered.size(); ++i) {
-    if (renumbered[i] == Scene::no_index) continue;
-    positions[count] = positions[i];
-    renumbered[i] = count++;
-  }
-  if (count == renumbered.size()) return;
-  positions.resize(count);
-  for (Index3& corners : triangles)
-    for (std::uint32_t& i : corners) i = renumbered[i];
-}
 
 bool has_area(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
   // Differences of floats in [-1,1] and their products are nearly exact in double: 0 means collinear.
@@ -249,9 +199,9 @@ void SceneBuilder::expand_instances() {
   for (std::size_t i = 0; i < objects_.size() && !all; ++i) {
     if (std::ranges::none_of(objects_[i].triangle_material, emits)) continue;
     lights[i] = objects_[i];
-    keep_marked(lights[i], marked(objects_[i].triangle_material, emits));
+    keep_triangles(lights[i], marked(objects_[i].triangle_material, emits));
     drop_unused(lights[i].positions, lights[i].triangles);
-    keep_marked(objects_[i], marked(objects_[i].triangle_material, std::not_fn(emits)));
+    keep_triangles(objects_[i], marked(objects_[i].triangle_material, std::not_fn(emits)));
   }
   std::vector<Placed> kept;
   for (const Placed& instance : instances_) {
@@ -292,7 +242,7 @@ void SceneBuilder::drop_degenerate(Mesh& mesh, const std::filesystem::path& file
     warn_of_dropped(static_cast<TriangleFault>(i), first.file.empty() ? SourcePlace{file.string()} : first,
                     dropped[i]);
   }
-  keep_marked(mesh, keep);
+  keep_triangles(mesh, keep);
   drop_unused(mesh.positions, mesh.triangles);
 }
 
@@ -426,7 +376,7 @@ void SceneBuilder::drop_flat() {
   }
   warn_of_dropped(TriangleFault::no_area, {scene.file.string()},
                   static_cast<std::uint64_t>(std::ranges::count(keep, false)));
-  keep_marked(mesh_, keep);
+  keep_triangles(mesh_, keep);
 }
 
 namespace {
