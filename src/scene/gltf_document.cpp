@@ -8,6 +8,7 @@
 
 #include "castray/error.h"
 #include "core/files.h"
+#include "core/range.h"
 #include "core/text.h"
 #include "scene/file_finder.h"
 
@@ -159,6 +160,13 @@ SourcePlace GltfDocument::place(std::string_view list, std::size_t index) const 
 
 void GltfDocument::fail(std::string_view list, std::size_t index, const std::string& what) const {
   throw InputError(place(list, index), fmt::format("{}[{}]: {}", list, index, what));
+}
+
+double GltfDocument::radiance(std::string_view list, std::size_t index, const std::string& what,
+                              double value) const {
+  if (!(value <= radiance_range.greatest))
+    fail(list, index, fmt::format("{} {:g}; it must be {}", what, value, radiance_range.text()));
+  return radiance_range.contains(value) ? value : 0;
 }
 
 void GltfDocument::warn(WarningList& warnings, std::string_view list, std::size_t index,

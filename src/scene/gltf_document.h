@@ -25,6 +25,10 @@ struct GltfDocument {
   /// Throws InputError with that place; the message begins with "accessors[2]: ".
   [[noreturn]] void fail(std::string_view list, std::size_t index, const std::string& what) const;
 
+  /// The radiance or intensity `value` of that element, 0 where it is negative or too small for floats.
+  /// Throws InputError where it is too great; the message begins with `what` and the value.
+  double radiance(std::string_view list, std::size_t index, const std::string& what, double value) const;
+
   /// Warns at that place, in the same form.
   void warn(WarningList& warnings, std::string_view list, std::size_t index, const std::string& what) const;
 

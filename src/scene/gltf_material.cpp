@@ -122,12 +122,8 @@ class GltfMaterialReader {
     out_.coverage = mask ? (alpha >= m_.alphaCutoff ? 1 : 0) : alpha;
   }
 
-  /// What is below 0, or too small to matter, is 0.
   double emitted(double radiance) const {
-    if (!(radiance <= radiance_range.greatest))
-      document_.fail(materials, index_,
-                     fmt::format("it emits {:g}; it must be {}", radiance, radiance_range.text()));
-    return radiance_range.contains(radiance) ? radiance : 0;
+    return document_.radiance(materials, index_, "it emits", radiance);
   }
 
   void set_emission() {

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "castray/error.h"
-#include "core/range.h"
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_value.h"
 #include "scene/names.h"
@@ -228,15 +227,11 @@ Json light_json(const GltfDocument& document, const GltfPlaced& light, WarningLi
   if (l.type != "point" && l.type != "spot" && l.type != "directional")
     document.fail(nodes, light.node, fmt::format("its light is of an unknown type '{}'", l.type));
   Vec3d intensity;
-  for (std::size_t i = 0; i < 3; ++i)
-    intensity[static_cast<int>(i)] = std::max(0.0, (i < l.color.size() ? l.color[i] : 1) * l.intensity);
-  for (int c = 0; c < 3; ++c)
-    if (!(intensity[c] <= radiance_range.greatest))
-      document.fail(nodes, light.node,
-                    fmt::format("its light has an intensity of {:g}; it must be {}", intensity[c],
-                                radiance_range.text()));
-    else if (!radiance_range.contains(intensity[c]))
-      intensity[c] = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double value = std::max(0.0, (i < l.color.size() ? l.color[i] : 1) * l.intensity);
+    intensity[static_cast<int>(i)] =
+        document.radiance(nodes, light.node, "its light has an intensity of", value);
+  }
   if (l.range > 0)
     document.warn(warnings, nodes, light.node, "its light has no range: it falls off for ever");
   Json json;
