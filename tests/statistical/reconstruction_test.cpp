@@ -64,6 +64,25 @@ void check_unbiased(const std::string& name, const Corrections& corrections) {
   CHECK(std::abs(corrections.relative.mean()) <= 4.5 * corrections.relative.error());
 }
 
+/// Blocks of films that keep differences, as `options` says, and of others with other seeds.
+void check_same_mean(const char* name, const Scene& scene, std::uint64_t seeds, RenderOptions options) {
+  options.width = options.height = 32;
+  RenderOptions plain_options = options;
+  plain_options.seed += 1000;
+  plain_options.reconstruct = Switch::off;
+  plain_options.edge_samples.reset();
+  std::vector<std::vector<double>> plain, more;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed, ++options.seed, ++plain_options.seed) {
+    more.push_back(block_means(render(scene, options).film.image(), 4));
+    plain.push_back(block_means(render(scene, plain_options).film.image(), 4));
+  }
+  const ExpectedBlocks expected(plain);
+  const BlockScores scores = block_scores(more, expected.mean, expected.variance);
+  CAPTURE(name, scores.rms, scores.largest);
+  CHECK(scores.largest < score_limit(scores.count, 1e-5));
+  CHECK(scores.rms < 1.25);
+}
+
 }  // namespace
 
 TEST_CASE("reconstructed images have the mean of their samples in every block", "[statistical]") {
@@ -77,48 +96,15 @@ TEST_CASE("reconstructed images have the mean of their samples in every block", 
 }
 
 TEST_CASE("outlines of lamps, seen by more rays, have the mean of all samples", "[statistical]") {
-  for (const char* name : {"cornell_box", "cornell_lights", "kinds/glowing_meshes", "kinds/sky_and_ground"}) {
-    const Scene scene = standard_scene(name);
-    std::vector<std::vector<double>> plain, more;
-    for (std::uint64_t seed = 0; seed < 64; ++seed) {
-      RenderOptions options = options_of(2, 3000 + seed);
-      options.width = options.height = 32;
-      more.push_back(block_means(render(scene, options).film.image(), 4));
-      options.seed += 1000;
-      options.reconstruct = Switch::off;
-      plain.push_back(block_means(render(scene, options).film.image(), 4));
-    }
-    const ExpectedBlocks expected(plain);
-    const BlockScores scores = block_scores(more, expected.mean, expected.variance);
-    CAPTURE(name, scores.rms, scores.largest);
-    CHECK(scores.largest < score_limit(scores.count, 1e-5));
-    CHECK(scores.rms < 1.25);
-  }
+  for (const char* name : {"cornell_box", "cornell_lights", "kinds/glowing_meshes", "kinds/sky_and_ground"})
+    check_same_mean(name, standard_scene(name), 64, options_of(2, 3000));
 }
 
 TEST_CASE("places at edges, sampled more often, have the mean of all samples", "[statistical]") {
-  const std::pair<const char*, Scene> scenes[] = {
-      {"mirrors", standard_scene("kinds/facing_mirrors")},
-      {"coverage", box_with([](Material& m) { m.coverage = 0.6; })},
-  };
-  for (const auto& [name, scene] : scenes) {
-    std::vector<std::vector<double>> once, often;
-    for (std::uint64_t seed = 0; seed < 40; ++seed) {
-      RenderOptions options = options_of(3, 5000 + seed);
-      options.width = options.height = 32;
-      options.edge_samples = 4;
-      often.push_back(block_means(render(scene, options).film.image(), 4));
-      options.seed += 1000;
-      options.reconstruct = Switch::off;
-      options.edge_samples.reset();
-      once.push_back(block_means(render(scene, options).film.image(), 4));
-    }
-    const ExpectedBlocks expected(once);
-    const BlockScores scores = block_scores(often, expected.mean, expected.variance);
-    CAPTURE(name, scores.rms, scores.largest);
-    CHECK(scores.largest < score_limit(scores.count, 1e-5));
-    CHECK(scores.rms < 1.25);
-  }
+  RenderOptions options = options_of(3, 5000);
+  options.edge_samples = 4;
+  check_same_mean("mirrors", standard_scene("kinds/facing_mirrors"), 40, options);
+  check_same_mean("coverage", box_with([](Material& m) { m.coverage = 0.6; }), 40, options);
 }
 
 TEST_CASE("many seeds show no bias of reconstructed images, in any scene", "[statistical][long]") {
