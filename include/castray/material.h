@@ -82,6 +82,8 @@ struct Material {
   bool vertex_colors = false;        ///< Scene::colors multiply kd where the triangle has them
   int back = -1;  ///< index into Scene::materials of what the surface is where the normal points away from;
                   ///< -1: the same on both sides
+  bool emits_backwards = false;  ///< `ke` leaves on the side that the normal points away from alone: it is
+                                 ///< the `back` of a pair
 
   std::array<TextureMap, surface_parameters> maps{};  ///< by SurfaceParameter
 
@@ -117,6 +119,8 @@ struct Material {
   bool has_back() const { return back >= 0; }
   bool has_index() const { return eta.x > 0; }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
+  /// Whether it emits on the side that the normal points to, or on the other.
+  bool emits_on(bool front) const { return emits() && (two_sided_emission || front != emits_backwards); }
 };
 
 }  // namespace castray

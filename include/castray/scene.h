@@ -131,7 +131,7 @@ struct Scene {
   std::vector<Texture> textures;
   Vec3d environment{0, 0, 0};  ///< radiance from every direction that hits nothing; an image's mean over them
   EnvironmentImage environment_image;
-  std::vector<std::uint32_t> lights;  ///< the triangles whose material emits, ascending
+  std::vector<std::uint32_t> lights;  ///< the triangles that emit on some side, ascending
   std::vector<DeltaLight> delta_lights;
 
   std::vector<RenderDefault> render_defaults;  ///< in the file's order
@@ -151,6 +151,14 @@ struct Scene {
     const Material& m = materials[material];
     return front || !m.has_back() ? material : static_cast<std::uint16_t>(m.back);
   }
+  /// Whether a triangle of this material emits on that side.
+  bool emits_on(std::uint16_t material, bool front) const {
+    return materials[on_side(material, front)].emits_on(front);
+  }
+  /// Whether a triangle of this material emits on some side.
+  bool emits(std::uint16_t material) const { return emits_on(material, true) || emits_on(material, false); }
+  /// What emits of this material: itself, and what it is on its back, each a light of its own.
+  std::vector<std::uint16_t> emitting_sides(std::uint16_t material) const;
   /// By material, whether some triangle has it on one of its sides.
   std::vector<bool> used_materials() const;
   /// The triangle's object, into objects.

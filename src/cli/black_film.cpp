@@ -41,15 +41,15 @@ Counts count(const Scene& scene) {
       const TriangleCorners light = corners_of(scene, scene.lights[l]);
       const Vec3d to_light = light.middle() - p;
       const bool shines_here =
-          scene.material_of(scene.lights[l]).two_sided_emission || dot(light.twice_area(), to_light) < 0;
+          scene.emits_on(scene.triangle_material[scene.lights[l]], dot(light.twice_area(), to_light) < 0);
       if (!shines_here || !(dot(normal, to_light) * towards_camera > 0)) continue;
       facing = true;
       reached |= !bvh.occluded(Ray<double>{p, to_light, 1 - 1e-6});
     }
     ++counts.hits;
     counts.backs += towards_camera < 0;
-    const Material& material = scene.material_of(hit.triangle);
-    counts.dark_sides += towards_camera < 0 && material.emits() && !material.two_sided_emission;
+    const std::uint16_t material = scene.triangle_material[hit.triangle];
+    counts.dark_sides += scene.emits(material) && !scene.emits_on(material, towards_camera > 0);
     counts.facing += facing;
     counts.reached += reached;
   }

@@ -352,7 +352,7 @@ void apply_flags(const RenderRequest& request, Scene& scene) {
   }
   if (flags.two_sided_lights)
     for (Material& material : scene.materials)
-      material.two_sided_emission |= material.emits() && !material.has_back();
+      material.two_sided_emission |= material.emits() && !material.has_back() && !material.emits_backwards;
 }
 
 }  // namespace castray::cli

@@ -120,7 +120,9 @@ std::vector<Facet> merge_triangles(const Scene& scene, const std::vector<std::ui
         const std::uint32_t j = it->second;
         const bool same_material =
             scene.triangle_material[triangles[j]] == scene.triangle_material[triangles[i]];
-        const bool has_image = scene.material_of(triangles[i]).has_emission_map();
+        const bool has_image =
+            std::ranges::any_of(scene.emitting_sides(scene.triangle_material[triangles[i]]),
+                                [&](std::uint16_t side) { return scene.materials[side].has_emission_map(); });
         if (partner[j] == Scene::no_index && same_material && !has_image &&
             merged(corners_of(scene, triangles[j]), corners)) {
           partner[i] = j;

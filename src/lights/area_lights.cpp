@@ -15,16 +15,19 @@ AreaLights<T>::AreaLights(const Scene& scene)
   std::vector<double> powers;
   for (const std::uint32_t i : scene.lights) {
     const TriangleCorners c = corners_of(scene, i);
-    const Material& material = scene.material_of(i);
     const Vec3d normal = c.twice_area();
-    for (const EmissionCell& cell : cells_.of(i)) {
-      powers.push_back(length(normal) / 2 * cell.step * cell.step * luminance(cell.emission));
-      power += powers.back();
-      cumulative_.push_back(power);
-      triangles_.push_back({Vec3<T>(c.a), Vec3<T>(c.b), Vec3<T>(c.c), Vec3<T>(normalize(normal)),
-                            Vec3<T>(material.ke * material.coverage), T(0),
-                            TrianglePlace<T>{i, T(cell.b1), T(cell.b2)}, T(cell.step),
-                            material.two_sided_emission});
+    for (const std::uint16_t side : scene.emitting_sides(scene.triangle_material[i])) {
+      const Material& material = scene.materials[side];
+      const Vec3d outward = normalize(material.emits_backwards ? -normal : normal);
+      for (const EmissionCell& cell : cells_.of(i, side)) {
+        powers.push_back(length(normal) / 2 * cell.step * cell.step * luminance(cell.emission));
+        power += powers.back();
+        cumulative_.push_back(power);
+        triangles_.push_back({Vec3<T>(c.a), Vec3<T>(c.b), Vec3<T>(c.c), Vec3<T>(outward),
+                              Vec3<T>(material.ke * material.coverage), side, T(0),
+                              TrianglePlace<T>{i, T(cell.b1), T(cell.b2)}, T(cell.step),
+                              material.two_sided_emission});
+      }
     }
   }
   for (double& c : cumulative_) c /= power;
@@ -45,11 +48,12 @@ LightPoint<T> AreaLights<T>::sample(double u_choice, Point2<T> u) const {
   place.b2 += t.step * b2;
   const TrianglePoint<T> point = point_on_triangle(t.v0, t.v1, t.v2, place.b1, place.b2);
   Vec3<T> radiance = t.radiance;
-  if (const Material& m = scene_.material_of(place.triangle); m.has_emission_map()) {
+  if (const Material& m = scene_.materials[t.material]; m.has_emission_map()) {
     const SurfaceValues<T> values = surface_values(scene_, m, place);
     radiance = values.color(slot_emission) * values.at(slot_coverage);
   }
-  return {point.p, point.error, t.normal, radiance, pdf_area(place), t.choice, place.triangle, t.two_sided};
+  return {point.p,  point.error,    t.normal,   radiance, pdf_area(t.material, place),
+          t.choice, place.triangle, t.two_sided};
 }
 
 template class AreaLights<float>;

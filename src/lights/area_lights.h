@@ -34,15 +34,18 @@ class AreaLights {
   /// A point for u_choice in [0,1) and u. Not to be called where empty().
   LightPoint<T> sample(double u_choice, Point2<T> u) const;
 
-  /// The density, per area, with which `sample` returns a given point of a triangle that emits.
-  T pdf_area(const TrianglePlace<T>& at) const {
-    return material_density_[scene_.triangle_material[at.triangle]] *
-           static_cast<T>(cells_.share(at.triangle, at.b1, at.b2));
+  /// The density, per area, with which `sample` returns a given point of a triangle that emits, on the side
+  /// that has this material.
+  T pdf_area(std::uint16_t material, const TrianglePlace<T>& at) const {
+    return material_density_[material] * static_cast<T>(cells_.share(at.triangle, at.b1, at.b2));
   }
 
  private:
   struct Triangle {
-    Vec3<T> v0, v1, v2, normal, radiance;
+    Vec3<T> v0, v1, v2;
+    Vec3<T> normal;  ///< of the side that emits
+    Vec3<T> radiance;
+    std::uint16_t material;
     T choice;
     TrianglePlace<T> corner;  ///< where it begins in the scene's triangle, and
     T step;                   ///< what barycentrics grow by along its edges

@@ -14,7 +14,7 @@ constexpr std::size_t most_pairs = 1u << 22;
 using Corners = Vec3f[3];
 
 /// Whether part of the triangle is within reach of the light's plane, on a side that shines.
-bool is_near_plane(const Corners& triangle, const Facet& light, bool two_sided) {
+bool is_near_plane(const Corners& triangle, const Facet& light, bool front, bool back) {
   constexpr float in_plane = 0x1p-22f;  // the light's other triangle, and what lies beside it
   float lowest = reach, highest = -reach;
   for (const Vec3f& p : triangle) {
@@ -22,7 +22,7 @@ bool is_near_plane(const Corners& triangle, const Facet& light, bool two_sided) 
     lowest = std::min(lowest, above);
     highest = std::max(highest, above);
   }
-  return (lowest < reach && highest > in_plane) || (two_sided && highest > -reach && lowest < -in_plane);
+  return (front && lowest < reach && highest > in_plane) || (back && highest > -reach && lowest < -in_plane);
 }
 
 bool overlaps(const Corners& triangle, const Facet& light) {
@@ -52,10 +52,11 @@ bool share_a_corner(const Corners& triangle, const Facet& light) {
 bool may_be_covered(const Scene& scene, const std::vector<Facet>& lights) {
   if (!scene.instances.empty() || lights.size() > most_pairs / scene.triangles.size()) return true;
   return std::ranges::any_of(lights, [&](const Facet& light) {
-    const bool two_sided = scene.materials[light.material].two_sided_emission;
+    const auto material = static_cast<std::uint16_t>(light.material);
+    const bool front = scene.emits_on(material, true), back = scene.emits_on(material, false);
     return std::ranges::any_of(scene.triangles, [&](const Index3& t) {
       const Corners triangle = {scene.positions[t[0]], scene.positions[t[1]], scene.positions[t[2]]};
-      return is_near_plane(triangle, light, two_sided) && overlaps(triangle, light) &&
+      return is_near_plane(triangle, light, front, back) && overlaps(triangle, light) &&
              !share_a_corner(triangle, light);
     });
   });

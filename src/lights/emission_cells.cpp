@@ -37,7 +37,9 @@ int root(double x, int most) { return std::clamp(static_cast<int>(std::sqrt(x)),
 
 EmissionCells::EmissionCells(const Scene& scene) : scene_(&scene), means_(mean_emissions(scene)) {
   const auto is_varied = [&](std::uint32_t t) {
-    return scene.material_of(t).has_emission_map() && scene.triangle_uvs[t][0] != Scene::no_index;
+    const std::uint16_t material = scene.triangle_material[t];
+    return scene.materials[material].has_emission_map() && scene.emitting_sides(material).size() == 1 &&
+           scene.triangle_uvs[t][0] != Scene::no_index;
   };
   if (scene.triangle_uvs.empty()) return;
   const auto varied = static_cast<double>(std::ranges::count_if(scene.lights, is_varied));
@@ -76,8 +78,8 @@ std::size_t EmissionCells::cell_at(double b1, double b2) const {
   return static_cast<std::size_t>(2 * (i * steps_ + j) + ((x - i) + (y - j) > 1 ? 1 : 0));
 }
 
-std::vector<EmissionCell> EmissionCells::of(std::uint32_t triangle) const {
-  if (!has_cells(triangle)) return {{.emission = means_[scene_->triangle_material[triangle]]}};
+std::vector<EmissionCell> EmissionCells::of(std::uint32_t triangle, std::uint16_t material) const {
+  if (!has_cells(triangle)) return {{.emission = means_[material]}};
   std::vector<EmissionCell> cells;
   for_each_part(steps_, [&](double b1, double b2, double step) {
     const std::size_t place = cell_at(b1 + step / 3, b2 + step / 3);

@@ -23,8 +23,9 @@ class EmissionCells {
   EmissionCells() = default;
   explicit EmissionCells(const Scene& scene);
 
-  /// The parts of an emitting triangle; itself where no image says what it emits.
-  std::vector<EmissionCell> of(std::uint32_t triangle) const;
+  /// The parts of a triangle of which this material, on one of its sides, emits; itself where no image says
+  /// what it emits, or where both sides might differ.
+  std::vector<EmissionCell> of(std::uint32_t triangle, std::uint16_t material) const;
 
   /// The density of light samples at a point of an emitting triangle, over that of its material by its mean.
   double share(std::uint32_t triangle, double b1, double b2) const;

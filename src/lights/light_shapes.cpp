@@ -10,7 +10,14 @@ namespace castray {
 
 namespace {
 
-KernelLight facet_light(const Facet& f, const Material& material, const Vec3d& emission) {
+/// A material that emits, and its mean emission.
+struct Emitter {
+  std::uint16_t number;
+  const Material& material;
+  Vec3d mean;
+};
+
+KernelLight facet_light(const Facet& f, const Emitter& emitter) {
   KernelLight light{};
   const Vec3d a{f.corner[0][0], f.corner[0][1], f.corner[0][2]},
       b{f.corner[1][0], f.corner[1][1], f.corner[1][2]};
@@ -19,24 +26,24 @@ KernelLight facet_light(const Facet& f, const Material& material, const Vec3d& e
   put(light.origin, a);
   put(light.edge1, b - a);
   put(light.edge2, d - a);
-  put(light.normal, normalize(normal));
-  put(light.emission, emission);
-  light.material = f.material;
+  put(light.normal, normalize(emitter.material.emits_backwards ? -normal : normal));
+  put(light.emission, emitter.mean);
+  light.material = emitter.number;
   light.source = f.triangle[0];
   light.area = static_cast<float>(length(normal));
-  light.two_sided = material.two_sided_emission;
+  light.two_sided = emitter.material.two_sided_emission;
   light.rectangle = std::abs(dot(b - a, d - a)) <= 1e-6 * length(b - a) * length(d - a);
   light.error = f.error;
   light.step = 1;
   return light;
 }
 
-KernelLight triangle_light(const Facet& f, int first, const Material& material, const Vec3d& emission) {
+KernelLight triangle_light(const Facet& f, int first, const Emitter& emitter) {
   Facet triangle = f;  // corners first, first + 1, first + 2
   std::copy_n(f.corner[first], 3, triangle.corner[0]);
   std::copy_n(f.corner[(first + 1) % 4], 3, triangle.corner[1]);
   std::copy_n(f.corner[(first + 2) % 4], 3, triangle.corner[3]);
-  KernelLight light = facet_light(triangle, material, emission);
+  KernelLight light = facet_light(triangle, emitter);
   light.area /= 2;
   light.triangle = 1;
   light.rectangle = 0;
@@ -72,26 +79,29 @@ bool is_parallelogram(const Facet& f) {
   return gap <= 1e-6 * size;
 }
 
+void add_shapes(const Facet& f, const Emitter& emitter, const EmissionCells& cells,
+                std::vector<KernelLight>& lights) {
+  if (f.triangle[0] == f.triangle[1]) {
+    const KernelLight whole = triangle_light(f, 0, emitter);
+    for (const EmissionCell& cell : cells.of(f.triangle[0], emitter.number))
+      lights.push_back(part_of(whole, cell));
+  } else if (is_parallelogram(f)) {
+    lights.push_back(facet_light(f, emitter));
+  } else {
+    lights.push_back(triangle_light(f, 0, emitter));
+    lights.push_back(triangle_light(f, 2, emitter));
+  }
+}
+
 }  // namespace
 
 std::vector<KernelLight> light_shapes(const std::vector<Facet>& facets, const Scene& scene,
                                       const EmissionCells& cells) {
   const std::vector<Vec3d> mean = mean_emissions(scene);
   std::vector<KernelLight> lights;
-  for (const Facet& f : facets) {
-    const Material& material = scene.materials[f.material];
-    const Vec3d& emission = mean[f.material];
-    if (!material.emits()) continue;
-    if (f.triangle[0] == f.triangle[1]) {
-      const KernelLight whole = triangle_light(f, 0, material, emission);
-      for (const EmissionCell& cell : cells.of(f.triangle[0])) lights.push_back(part_of(whole, cell));
-    } else if (is_parallelogram(f)) {
-      lights.push_back(facet_light(f, material, emission));
-    } else {
-      lights.push_back(triangle_light(f, 0, material, emission));
-      lights.push_back(triangle_light(f, 2, material, emission));
-    }
-  }
+  for (const Facet& f : facets)
+    for (const std::uint16_t side : scene.emitting_sides(static_cast<std::uint16_t>(f.material)))
+      add_shapes(f, {side, scene.materials[side], mean[side]}, cells, lights);
   return lights;
 }
 

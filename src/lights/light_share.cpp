@@ -34,10 +34,11 @@ Vec3d twice_area(const Scene& scene, std::size_t triangle) {
 bool shines_on(const Scene& scene, std::uint32_t light, std::size_t triangle) {
   constexpr double in_plane = 0x1p-20;  // scenes are scaled to about 1
   const Vec3d normal = normalize(twice_area(scene, light));
-  const bool two_sided = scene.material_of(light).two_sided_emission;
+  const std::uint16_t material = scene.triangle_material[light];
+  const bool front = scene.emits_on(material, true), back = scene.emits_on(material, false);
   for (std::size_t k = 0; k < 3; ++k) {
     const double above = dot(corner(scene, triangle, k) - corner(scene, light, 0), normal);
-    if (above > in_plane || (two_sided && above < -in_plane)) return true;
+    if ((front && above > in_plane) || (back && above < -in_plane)) return true;
   }
   return false;
 }
@@ -66,13 +67,15 @@ bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
   if (scene.lights.size() > most_pairs / scene.triangles.size() || !all_diffuse(scene)) return true;
   const std::vector<Vec3d> emission = mean_emissions(scene);
   double power = 0;
-  for (const std::uint32_t light : scene.lights) {
-    const int sides = scene.material_of(light).two_sided_emission ? 2 : 1;
-    power +=
-        luminance(emission[scene.triangle_material[light]]) * sides * length(twice_area(scene, light)) / 2;
-  }
+  for (const std::uint32_t light : scene.lights)
+    for (const std::uint16_t side : scene.emitting_sides(scene.triangle_material[light])) {
+      const int directions = scene.materials[side].two_sided_emission ? 2 : 1;
+      power += luminance(emission[side]) * directions * length(twice_area(scene, light)) / 2;
+    }
   return std::ranges::any_of(scene.lights, [&](std::uint32_t light) {
-    const double density = luminance(emission[scene.triangle_material[light]]) / power;
+    double density = power;
+    for (const std::uint16_t side : scene.emitting_sides(scene.triangle_material[light]))
+      density = std::min(density, luminance(emission[side]) / power);
     return shines_within(scene, light, bsdf_samples / (std::numbers::pi * density));
   });
 }

@@ -22,9 +22,9 @@ struct FoundLight {
   Float density;    ///< area pdf of the point under light sampling, for MIS
 };
 CASTRAY_INLINE FoundLight found_light(const KernelMaterial* materials, Uint material, Mask front) {
-  const Mask both_sides =
-      ~((gather(materials, &KernelMaterial::traits, material) & uint32_t{trait_emits_behind}) == Uint(0u));
-  return {front | both_sides, both_sides,
+  const Uint traits = gather(materials, &KernelMaterial::traits, material);
+  const auto has = [&](uint32_t trait) { return ~((traits & trait) == Uint(0u)); };
+  return {front | has(trait_emits_behind | trait_emits_backwards), has(trait_emits_behind),
           gather_vec(fields_of(materials, &KernelMaterial::value) + slot_emission, material),
           gather(materials, &KernelMaterial::light_density, material)};
 }

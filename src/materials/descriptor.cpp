@@ -115,7 +115,9 @@ std::uint32_t traits_of(const Material& material) {
   if (!(traits & (trait_specular | trait_transmits))) traits |= trait_shareable;
   if (material.map(SurfaceParameter::normal).used() || material.map(SurfaceParameter::bump).used())
     traits |= trait_bent;
-  if (material.emits()) traits |= trait_emits | (material.two_sided_emission ? trait_emits_behind : 0u);
+  if (material.emits())
+    traits |= trait_emits | (material.two_sided_emission ? trait_emits_behind : 0u) |
+              (material.emits_backwards ? trait_emits_backwards : 0u);
   return traits;
 }
 

@@ -17,6 +17,7 @@ enum MaterialTrait : uint32_t {
   trait_bent = 64,          ///< has a normal or bump map
   trait_focuses = 128,  ///< not smooth, but all that it scatters stays in a narrow lobe, or passes through:
                         ///< what light it sends to other surfaces are caustics
+  trait_emits_backwards = 256,  ///< on the back alone; never seen from the front
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as

@@ -114,6 +114,7 @@ std::uint64_t scene_hash(const Scene& scene) {
     }
     hash.add(m.correlated_masking);
     if (m.has_back()) hash.add(m.back);
+    if (m.emits_backwards) hash.add(m.emits_backwards);
     if (m.has_index()) hash.add(m.eta), hash.add(m.k);
   }
   for (const Texture& t : scene.textures) {

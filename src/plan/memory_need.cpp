@@ -40,7 +40,9 @@ TreeBytes tree_bytes(const Plan& plan, std::uint64_t triangles, bool reference) 
 std::uint64_t bytes_to_prepare(const Scene& scene, const Plan& plan, Integrator integrator) {
   const bool reference = integrator == Integrator::reference;
   const std::uint64_t triangles = scene.triangles.size();
-  const std::uint64_t lights = scene.lights.size() * (reference ? bytes_of_reference_light : bytes_of_light);
+  const int most_sides = std::ranges::any_of(scene.materials, &Material::emits_backwards) ? 2 : 1;
+  const std::uint64_t lights =
+      scene.lights.size() * most_sides * (reference ? bytes_of_reference_light : bytes_of_light);
   const std::uint64_t always = bytes_of_any_scene + bytes_of_environment(scene);
   if (plan.list) return always + triangles * bytes_of_facet + lights;
   const TreeBytes tree = tree_bytes(plan, triangles, reference);

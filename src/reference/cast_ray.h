@@ -156,10 +156,10 @@ class CastRay {
   Vec3<T> emission(const Surface<T>& x, T distance, const Arrival& arrival) const {
     const Material& material = scene_.materials[x.material];
     const T cosine = dot(x.normal, x.to_viewer);
-    if (!arrival.counts || !material.emits() || !(cosine > 0 || material.two_sided_emission)) return {};
+    if (!arrival.counts || !material.emits_on(cosine > 0)) return {};
     const Vec3<T>& le = x.emission;
     if (!arrival.shared) return le;
-    const T light_pdf = lights_.pdf_area(x.place) * distance * distance / std::abs(cosine);
+    const T light_pdf = lights_.pdf_area(x.material, x.place) * distance * distance / std::abs(cosine);
     return le * bsdf_share(light_pdf, arrival.pdf);
   }
 

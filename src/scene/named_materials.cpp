@@ -18,6 +18,10 @@ bool is_pair(const JsonNode& node) {
   });
 }
 
+std::string name_of_side(std::string_view pair, const JsonNode& side) {
+  return fmt::format("{} ({})", pair, side.key);
+}
+
 /// What light may do at one side must not depend on the other.
 void check_sides(const JsonNode& front_node, const Material& front, const JsonNode& back_node,
                  const Material& back) {
@@ -27,11 +31,10 @@ void check_sides(const JsonNode& front_node, const Material& front, const JsonNo
           node->place,
           fmt::format("\"{}\" cannot be a dielectric, through which light gets to the other side",
                       node->key));
-  if (front.emits() && front.two_sided_emission)
-    throw InputError(front_node.place, "\"front\" of a pair cannot emit on both sides");
-  if (back.emits())
-    throw InputError(back_node.place,
-                     "\"back\" cannot emit; turn the mesh inside out and exchange \"front\" and \"back\"");
+    else if (side->emits() && side->two_sided_emission)
+      throw InputError(
+          node->place,
+          fmt::format("\"{}\" of a pair cannot emit on both sides: each emits on its own", node->key));
   if (front.coverage != back.coverage ||
       front.map(SurfaceParameter::coverage) != back.map(SurfaceParameter::coverage))
     throw InputError(back_node.place, "\"front\" and \"back\" must have the same \"coverage\"");
@@ -64,8 +67,19 @@ void NamedMaterials::read_pair(const JsonNode& node) {
   check_sides(front_node, materials[front], back_node, materials[back]);
   Material pair = materials[front];
   pair.name = node.key;
-  pair.back = back;
+  pair.back = materials[back].emits() ? emitting_back(back, back_node, node.key) : back;
   materials[indices_.at(node.key)] = std::move(pair);
+}
+
+/// The same material, which emits backwards: a copy where others may have it, too.
+std::uint16_t NamedMaterials::emitting_back(std::uint16_t back, const JsonNode& node, std::string_view pair) {
+  if (node.type == JsonNode::Type::string) {
+    Material copy = builder_.scene.materials[back];
+    copy.name = name_of_side(pair, node);
+    back = builder_.add_material(std::move(copy));
+  }
+  builder_.scene.materials[back].emits_backwards = true;
+  return back;
 }
 
 /// A material by its name, or one of the pair's own.
@@ -78,7 +92,7 @@ std::uint16_t NamedMaterials::index_of_side(const JsonNode& node, std::string_vi
   if (nested) throw InputError(node.place, fmt::format("\"{}\" cannot be a pair itself", node.key));
   if (!own) return find(node, node.key);
   Material side = read_material(node, file_, builder_);
-  side.name = fmt::format("{} ({})", pair, node.key);
+  side.name = name_of_side(pair, node);
   return builder_.add_material(std::move(side));
 }
 

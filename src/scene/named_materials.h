@@ -27,6 +27,7 @@ class NamedMaterials {
  private:
   void read_pair(const JsonNode& node);
   std::uint16_t index_of_side(const JsonNode& node, std::string_view pair);
+  std::uint16_t emitting_back(std::uint16_t back, const JsonNode& node, std::string_view pair);
 
   const std::filesystem::path& file_;
   SceneBuilder& builder_;

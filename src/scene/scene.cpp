@@ -22,6 +22,14 @@ std::size_t Scene::object_of(std::uint32_t triangle) const {
   return static_cast<std::size_t>(next - objects.begin()) - 1;
 }
 
+std::vector<std::uint16_t> Scene::emitting_sides(std::uint16_t material) const {
+  std::vector<std::uint16_t> sides;
+  if (materials[material].emits()) sides.push_back(material);
+  if (const std::uint16_t back = on_side(material, false); back != material && materials[back].emits())
+    sides.push_back(back);
+  return sides;
+}
+
 std::vector<bool> Scene::used_materials() const {
   std::vector<bool> used(materials.size());
   for (const std::uint16_t material : triangle_material) used[material] = true;

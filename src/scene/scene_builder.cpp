@@ -194,7 +194,7 @@ void SceneBuilder::expand_instances() {
   const bool all =
       instancing == Instancing::expand || (instancing == Instancing::automatic && shown <= few_triangles);
 
-  const auto emits = [&](std::uint16_t material) { return scene.materials[material].emits(); };
+  const auto emits = [&](std::uint16_t material) { return scene.emits(material); };
   std::vector<Mesh> lights(objects_.size());
   for (std::size_t i = 0; i < objects_.size() && !all; ++i) {
     if (std::ranges::none_of(objects_[i].triangle_material, emits)) continue;
@@ -447,7 +447,7 @@ Scene SceneBuilder::finish() {
     if (mean_emission(scene, m) == Vec3d()) m.ke = {};
   check_brightness(scene);
   for (std::uint32_t t = 0; t < scene.own_triangles(); ++t)
-    if (scene.material_of(t).emits()) scene.lights.push_back(t);
+    if (scene.emits(scene.triangle_material[t])) scene.lights.push_back(t);
   move_lights_to_scene_space();
   scene.default_environment = scene.lights.empty() && scene.delta_lights.empty() && !environment_given;
   if (scene.default_environment) scene.environment = Vec3d(1);

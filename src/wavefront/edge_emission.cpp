@@ -44,8 +44,9 @@ Vec3f EdgeEmission::at(int x, int y, std::uint64_t sample) const {
 Vec3f EdgeEmission::emission(const Hit<float>& hit, const Vec3f& direction) const {
   if (!hit.found()) return Vec3f(scene_.environment);
   const auto [normal, material] = surface_hit(scene_, data_, hit);
-  const Material& m = scene_.materials[material];
-  return m.two_sided_emission || dot(normal, direction) < 0 ? Vec3f(m.ke) : Vec3f();
+  const bool front = dot(normal, direction) < 0;
+  const Material& m = scene_.materials[scene_.on_side(static_cast<std::uint16_t>(material), front)];
+  return m.emits_on(front) ? Vec3f(m.ke) : Vec3f();
 }
 
 }  // namespace castray

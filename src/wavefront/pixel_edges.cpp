@@ -43,7 +43,7 @@ bool is_edge(const Corner (&corners)[4]) {
 /// well.
 bool sees_lamp(const Scene& scene, const Corner (&corners)[4]) {
   return std::ranges::any_of(corners, [&](const Corner& corner) {
-    return corner.material != nothing && scene.materials[corner.material].emits();
+    return corner.material != nothing && scene.emits(static_cast<std::uint16_t>(corner.material));
   });
 }
 

@@ -237,13 +237,13 @@ const std::vector<Case> cases = {
         R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "dielectric" } } },)",
         "s.json:2:86: \"back\" cannot be a dielectric, through which light gets to the other side"),
     in_line(
-        "a lamp on the back",
-        R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "diffuse", "ke": 1 } } },)",
-        "s.json:2:86: \"back\" cannot emit; turn the mesh inside out and exchange \"front\" and \"back\""),
+        "a back that emits on both",
+        R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "diffuse", "ke": 1, "two_sided_emission": true } } },)",
+        "s.json:2:86: \"back\" of a pair cannot emit on both sides: each emits on its own"),
     in_line(
         "a side that emits on both",
         R"(  "materials": { "l": { "type": "diffuse", "ke": 1, "two_sided_emission": true }, "a": { "type": "two_sided", "front": "l", "back": { "type": "diffuse" } } },)",
-        "s.json:2:120: \"front\" of a pair cannot emit on both sides"),
+        "s.json:2:120: \"front\" of a pair cannot emit on both sides: each emits on its own"),
     in_line(
         "sides of which not the same share is there",
         R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse", "coverage": 0.5 }, "back": { "type": "diffuse" } } },)",

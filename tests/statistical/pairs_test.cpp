@@ -17,11 +17,12 @@ namespace {
 std::uint16_t add_pair(SceneSketch& sketch, const Material& front, const Material& back) {
   Material pair = front;
   pair.back = sketch.add_material(back);
+  sketch.scene.materials.back().emits_backwards = back.emits();
   return sketch.add_material(pair);
 }
 
-/// A gutter over a floor, seen from above and from its side, between a lamp of which the back is red, a
-/// mirror and a dark sky. `dull`: all is diffuse.
+/// A gutter over a floor, seen from above and from its side, between a lamp of which the back is red and
+/// glows, a mirror and a dark sky. `dull`: all is diffuse.
 Scene gutter(bool dull) {
   SceneSketch sketch;
   const Material red{.name = "red", .kd = {0.7, 0.2, 0.1}}, blue{.name = "blue", .kd = {0.1, 0.2, 0.8}};
@@ -32,7 +33,8 @@ Scene gutter(bool dull) {
   coated.alpha = 0.1;
   const auto floor = sketch.add_material({.name = "floor", .kd = Vec3d(0.6)});
   const auto sheet = dull ? add_pair(sketch, red, blue) : add_pair(sketch, metal, coated);
-  const auto lamp = add_pair(sketch, {.name = "lamp", .kd = Vec3d(0.2), .ke = {9, 8, 7}}, red);
+  const auto lamp = add_pair(sketch, {.name = "lamp", .kd = Vec3d(0.2), .ke = {9, 8, 7}},
+                             {.name = "glow", .kd = {0.7, 0.2, 0.1}, .ke = {6, 1, 3}});
   const auto wall = dull ? floor : add_pair(sketch, {.name = "mirror", .type = MaterialType::conductor}, red);
   sketch.add_quad({-1, -0.5f, 1}, {1, -0.5f, 1}, {1, -0.5f, -1}, {-1, -0.5f, -1}, floor);
   sketch.add_quad({-1, -0.5f, -0.9f}, {1, -0.5f, -0.9f}, {1, 1, -0.9f}, {-1, 1, -0.9f}, wall);
@@ -63,10 +65,52 @@ TEST_CASE("kernels see each side of a surface as castRay does", "[statistical]")
   }
 }
 
+/// A lamp between floor and ceiling: the front shines down, the back, through an image, up. `apart`: two
+/// lamps back to back instead.
+Scene lamp_between(bool apart) {
+  SceneSketch sketch;
+  const Material down{.name = "down", .kd = Vec3d(0.5), .ke = {9, 8, 7}};
+  Material up{.name = "up", .kd = Vec3d(0.1), .ke = {2, 4, 16}};
+  up.map(SurfaceParameter::ke).texture = 0;
+  Texture image{.name = "halves", .width = 2, .height = 1};
+  image.floats = {1, 1, 1, 0.25f, 0, 0};
+  sketch.scene.textures = {image};
+  sketch.scene.uvs = {{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+  const auto dull = sketch.add_material({.name = "dull", .kd = Vec3d(0.6)});
+  const auto add_lamp = [&](float y, bool facing_down, std::uint16_t material) {
+    const Vec3f a{-.4f, y, -.4f}, b{-.4f, y, .4f}, c{.4f, y, .4f}, d{.4f, y, -.4f};
+    facing_down ? sketch.add_quad(d, c, b, a, material) : sketch.add_quad(a, b, c, d, material);
+    sketch.scene.triangle_uvs.push_back(facing_down ? Index3{3, 2, 1} : Index3{0, 1, 2});
+    sketch.scene.triangle_uvs.push_back(facing_down ? Index3{3, 1, 0} : Index3{0, 2, 3});
+  };
+  if (apart) {
+    add_lamp(0, true, sketch.add_material(down));
+    add_lamp(1e-4f, false, sketch.add_material(up));
+  } else {
+    add_lamp(0, true, add_pair(sketch, down, up));
+  }
+  sketch.add_quad({-1, -.5f, 1}, {1, -.5f, 1}, {1, -.5f, -1}, {-1, -.5f, -1}, dull);
+  sketch.add_quad({-1, .5f, -1}, {1, .5f, -1}, {1, .5f, 1}, {-1, .5f, 1}, dull);
+  sketch.scene.triangle_uvs.resize(sketch.scene.triangles.size(),
+                                   {Scene::no_index, Scene::no_index, Scene::no_index});
+  sketch.scene.camera = make_camera({0, 0.1, 2.6}, {0, 0, 0}, {0, 1, 0}, 40);
+  return sketch.scene;
+}
+
+TEST_CASE("a lamp of two sides is two lamps back to back", "[statistical]") {
+  const Expected expected(lamp_between(true));
+  const Scene pair = lamp_between(false);
+  expected.check("castRay", pair, as_reference(wavefront_options(16, 100)));
+  expected.check("shared", pair, wavefront_options(4));
+  expected.check("plain", pair, plain(wavefront_options(8)));
+  expected.check_with("MIS", pair, [](RenderOptions& o) { o.mis = Switch::on; });
+}
+
 TEST_CASE("a side that is not seen changes nothing, the other does", "[statistical]") {
   const auto square = [](const Vec3d& front, const Vec3d& back, double z) {
     SceneSketch sketch;
-    const auto pair = add_pair(sketch, {.name = "front", .kd = front}, {.name = "back", .kd = back});
+    const auto pair = add_pair(sketch, {.name = "front", .kd = front, .ke = back},
+                               {.name = "back", .kd = back, .ke = 2.0 * front});
     sketch.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, pair);
     sketch.scene.environment = Vec3d(1);
     sketch.scene.camera = make_camera({0, 0, z}, {0, 0, 0}, {0, 1, 0}, 20);
@@ -80,6 +124,7 @@ TEST_CASE("a side that is not seen changes nothing, the other does", "[statistic
       CAPTURE(way.name, z);
       const Image image = render(square(front, back, z), way.options).film.image();
       for (const Vec3f& pixel : image.pixels)
-        for (int c = 0; c < 3; ++c) REQUIRE(pixel[c] == Approx(z > 0 ? front[c] : back[c]).epsilon(1e-5));
+        for (int c = 0; c < 3; ++c)
+          REQUIRE(pixel[c] == Approx(back[c] + (z > 0 ? front[c] : 2 * front[c])).epsilon(1e-5));
     }
 }

@@ -52,8 +52,7 @@ class SceneSketch {
 
  private:
   void add_triangle(const Index3& corners, std::uint16_t material) {
-    if (scene.materials[material].emits())
-      scene.lights.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
+    if (scene.emits(material)) scene.lights.push_back(static_cast<std::uint32_t>(scene.triangles.size()));
     scene.triangles.push_back(corners);
     scene.triangle_material.push_back(material);
   }

@@ -209,6 +209,26 @@ TEST_CASE("a material may be another one on each side") {
     "meshes": [ { "obj": "t.obj", "material": "a" } ] })")));
 }
 
+TEST_CASE("each side of a material may emit") {
+  const Scene scene = load_text(R"({ "materials": {
+      "lamp": { "type": "diffuse", "ke": 3 },
+      "turned": { "type": "two_sided", "front": { "type": "diffuse" }, "back": "lamp" },
+      "both": { "type": "two_sided", "front": "lamp", "back": { "type": "diffuse", "ke": 2 } } },
+    "meshes": [ { "obj": "t.obj", "material": "lamp" }, { "obj": "t.obj", "material": "turned" },
+                { "obj": "t.obj", "material": "both" } ] })");
+  CHECK(scene.lights == std::vector<std::uint32_t>{0, 1, 2});
+  const auto emitted = [&](std::uint32_t triangle, bool front) {
+    const std::uint16_t material = scene.triangle_material[triangle];
+    return scene.emits_on(material, front) ? scene.materials[scene.on_side(material, front)].ke.x : 0;
+  };
+  CHECK(emitted(0, true) == 3);
+  CHECK(emitted(0, false) == 0);
+  CHECK(emitted(1, true) == 0);
+  CHECK(emitted(1, false) == 3);
+  CHECK(emitted(2, true) == 3);
+  CHECK(emitted(2, false) == 2);
+}
+
 TEST_CASE("materials are written as they are read") {
   for (const std::string keys :
        {R"("type": "conductor", "reflectance": { "eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0] }, "alpha": 0.3)",
