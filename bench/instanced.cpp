@@ -74,7 +74,7 @@ std::vector<Transform> kinds_of_places() {
 Scene as_instances(const Scene& flat, const std::vector<Transform>& places) {
   std::vector<std::uint32_t> order(flat.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto is_own = [&](std::uint32_t t) { return flat.material_of(t).emits(); };
+  const auto is_own = [&](std::uint32_t t) { return flat.emits(flat.triangle_material[t]); };
   // Not the one of std::ranges: clang 14 cannot compile the view that libstdc++ 12 returns.
   const auto rest = std::stable_partition(order.begin(), order.end(), is_own);
   const auto reordered = [&](const auto& values) {

@@ -70,12 +70,15 @@ struct Material {
   Vec3d ke{0, 0, 0};                 ///< emitted radiance
   Vec3d absorption{0, 0, 0};         ///< dielectric: inside it, over a unit of length of the files
   double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
-  double metallic = 0;               ///< principled, [0,1]: the metal's share
-  double sheen = 0;                  ///< principled, [0,1]
-  double clearcoat = 0;              ///< principled, [0,1]: the share that the coat covers
-  double clearcoat_roughness = 0;    ///< principled, [0,1]
-  double coverage = 1;               ///< [0,1]: the share of the surface that is there
-  bool correlated_masking = true;    ///< false, reference integrator only: to compare with renderers without
+  /// Conductor, in [0,0.99]: where it is a, the width is alpha / sqrt(1 - a) in the direction in which u
+  /// grows, turned by so many degrees towards that of v, and alpha sqrt(1 - a) across it.
+  double anisotropy = 0, anisotropy_rotation = 0;
+  double metallic = 0;             ///< principled, [0,1]: the metal's share
+  double sheen = 0;                ///< principled, [0,1]
+  double clearcoat = 0;            ///< principled, [0,1]: the share that the coat covers
+  double clearcoat_roughness = 0;  ///< principled, [0,1]
+  double coverage = 1;             ///< [0,1]: the share of the surface that is there
+  bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
   double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
   bool two_sided_emission = false;
   bool multiple_scattering = false;  ///< conductor: add what facets reflect more than once

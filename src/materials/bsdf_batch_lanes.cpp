@@ -19,10 +19,8 @@ CASTRAY_INLINE void store_some(float* const to[3], const Vec& v, uint32_t i, uin
   store_some(to[2], v.z, i, count);
 }
 
-}  // namespace
-
-void evaluate_bsdfs(const MaterialTables& tables, const BsdfBatch& batch) {
-  constexpr uint32_t features = feature_materials;
+template <uint32_t features>
+CASTRAY_INLINE void evaluate_batch(const MaterialTables& tables, const BsdfBatch& batch) {
   const Uint material = Uint(batch.material * material_floats) | (Uint(batch.front ? 1u : 0u) << 31);
   const Parameters<features> parameters =
       gather_parameters<features>(tables, Uint(batch.material * material_floats));
@@ -40,6 +38,15 @@ void evaluate_bsdfs(const MaterialTables& tables, const BsdfBatch& batch) {
     store_some(batch.eta2, s.eta2, i, batch.count);
     store_some(batch.specular, select(s.specular, Float(1.f), Float(0.f)), i, batch.count);
   }
+}
+
+}  // namespace
+
+void evaluate_bsdfs(const MaterialTables& tables, const BsdfBatch& batch) {
+  if (tables.stretched)
+    evaluate_batch<feature_materials | feature_detail>(tables, batch);
+  else
+    evaluate_batch<feature_materials>(tables, batch);
 }
 
 }  // namespace castray::CASTRAY_ISA

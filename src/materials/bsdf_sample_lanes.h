@@ -17,8 +17,11 @@ struct Bsdf {
   Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side
   Uint albedo;  ///< offset of its lobe's table, where it has one
   const KernelAlbedo* albedos;
-  Float metal_sheen, coat;  ///< principled, in whose lanes alone they are set: slot_metal_sheen, slot_coat
-  Uint record;              ///< offset of the material
+  /// Principled: slot_metal_sheen and slot_coat; conductor, where `stretched`: slot_stretch. In their lanes
+  /// alone.
+  Float own[2];
+  bool stretched;                             ///< whether there are conductors whose lobes are not round
+  Uint record;                                ///< offset of the material
   const KernelMaterial *materials, *indices;  ///< as in MaterialTables
 
   CASTRAY_INLINE Mask is(MaterialType t) const { return type == Uint((uint32_t)t); }

@@ -36,6 +36,17 @@ const MaterialDescriptor& conductor_descriptor() {
             .brief = true},
            roughness_key(),
            alpha_key(),
+           {.name = "anisotropy",
+            .kind = MaterialKey::Kind::number,
+            .field = &Material::anisotropy,
+            .range = {.least = 0, .greatest = 0.99},
+            .text = "1 - the ratio of the lobe's widths, whose geometric mean is alpha [0]."},
+           {.name = "anisotropy_rotation",
+            .kind = MaterialKey::Kind::number,
+            .field = &Material::anisotropy_rotation,
+            .range = float_range,
+            .text = "Degrees from the direction in which u grows, towards that of v, to the one in which the "
+                    "lobe is wide [0]."},
            {.name = "multiple_scattering",
             .kind = MaterialKey::Kind::flag,
             .field = &Material::multiple_scattering,
@@ -43,7 +54,8 @@ const MaterialDescriptor& conductor_descriptor() {
                 "Adds what facets reflect more than once, so that rough metals are not too dark [false]."}}),
       .traits = [](const Material& m) -> std::uint32_t {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
-               (has_narrow_lobe(m) ? trait_focuses : 0u);
+               (has_narrow_lobe(m) ? trait_focuses : 0u) |
+               (m.anisotropy > 0 && !has_smooth_lobe(m) ? trait_stretched : 0u);
       },
       .albedo = [](const SurfaceValues<double>& v) { return v.color(slot_ks); },
       .finish =

@@ -53,7 +53,8 @@ struct Conductor {
     Conductor metal{Vec3<T>(reflectance),
                     Vec3<T>(m.eta),
                     Vec3<T>(m.k),
-                    {static_cast<T>(values.at(slot_alpha)), m.correlated_masking}};
+                    {static_cast<T>(values.at(slot_alpha)), m.correlated_masking,
+                     static_cast<T>(std::sqrt(1 - m.anisotropy))}};
     if (!lobes.own) return metal;
     metal.scattered = Vec3<T>(scattered_again(m.has_index() ? mean_fresnel(m) : reflectance, *lobes.own));
     metal.albedo = lobes.own;

@@ -49,17 +49,14 @@ struct Conductor : ModelDefaults {
   }
 
   CASTRAY_INLINE static BsdfValue evaluate(const Bsdf& b, Vec wo, Vec wi) {
-    const Vec h = normalize(wo + wi);
-    const Float d = ggx_distribution(b.alpha, h);
-    const Float cap = ggx_cap_scale(b.alpha, wo);
-    const BsdfValue once{fresnel(b, dot(wo, h)) * (d * ggx_shadowing_over_cos(b.alpha, wo, wi) * wi.z),
-                         d / (Float(2.f) * fma(cap, wo.z, ggx_stretched_length(b.alpha, wo)))};
+    const BsdfValue once = b.stretched ? stretched_once(b, wo, wi) : once_by(b, b.alpha, wo, wi);
     const Mask again = scatters_again(b);
     return none(again) ? once : choose(again, with_scattered_again(b, wo, wi, once), once);
   }
 
   CASTRAY_INLINE static BsdfSample sample(const Bsdf& b, Vec wo, Float choice, Float u, Float v) {
-    const Vec h = ggx_sample_normal(b.alpha, wo, u, v, ggx_cap_scale(b.alpha, wo));
+    const Vec h = b.stretched ? stretched_normal(b, wo, u, v)
+                              : ggx_sample_normal(b.alpha, wo, u, v, ggx_cap_scale(b.alpha, wo));
     Vec wi = normalize(reflect(wo, h));
     if (const Mask again = scatters_again(b); any(again))
       wi = select(again & ~(choice < lobe_probability(b, lost(b, wo.z))), cosine_hemisphere(u, v), wi);
@@ -78,7 +75,26 @@ struct Conductor : ModelDefaults {
   }
 
  private:
+  /// Reflected once, by facets of this width: Float, or GgxWidths.
+  template <class Alpha>
+  CASTRAY_INLINE static BsdfValue once_by(const Bsdf& b, const Alpha& alpha, Vec wo, Vec wi) {
+    const Vec h = normalize(wo + wi);
+    const Float d = ggx_distribution(alpha, h);
+    const Float cap = ggx_cap_scale(alpha, wo);
+    return {fresnel(b, dot(wo, h)) * (d * ggx_shadowing_over_cos(alpha, wo, wi) * wi.z),
+            d / (Float(2.f) * fma(cap, wo.z, ggx_stretched_length(alpha, wo)))};
+  }
+
+  CASTRAY_INLINE static GgxWidths widths(const Bsdf& b) { return ggx_widths(b.alpha, b.own[0], b.own[1]); }
+
   // Not inlined: few scenes need them.
+
+  static __attribute__((noinline)) BsdfValue stretched_once(const Bsdf& b, Vec wo, Vec wi) {
+    return once_by(b, widths(b), wo, wi);
+  }
+  static __attribute__((noinline)) Vec stretched_normal(const Bsdf& b, Vec wo, Float u, Float v) {
+    return ggx_sample_normal(widths(b), wo, u, v, ggx_cap_scale(widths(b), wo));
+  }
 
   static __attribute__((noinline)) Vec fresnel_by_index(const Bsdf& b, Float cosine) {
     const Vec eta = gather_vec(b.indices, &KernelMaterial::eta, b.record),

@@ -22,21 +22,23 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
   b.record = record;
   b.materials = table;
   b.indices = tables.indices;
+  b.stretched = false;
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];
     const Uint row =
         to_uint(fma(sqrt(b.alpha), gather(table, &KernelMaterial::albedo_rows, record), Float(0.5f)));
     b.albedo = b.albedo + row * uint32_t{albedo_floats};
-    b.metal_sheen = p.value[slot_metal_sheen];
-    b.coat = p.value[slot_coat];
+    b.own[0] = p.value[slot_metal_sheen];
+    b.own[1] = p.value[slot_coat];
+    b.stretched = tables.stretched;
   } else {
     const float* values = fields_of(table, &KernelMaterial::value);
     b.ks = gather_vec(values + slot_ks, record);
     b.alpha = gather(values + slot_alpha, record);
     if (any(b.is(MaterialType::principled))) {
-      b.metal_sheen = gather(values + slot_metal_sheen, record);
-      b.coat = gather(values + slot_coat, record);
+      b.own[0] = gather(values + slot_metal_sheen, record);
+      b.own[1] = gather(values + slot_coat, record);
     }
   }
   return b;

@@ -16,8 +16,9 @@ CASTRAY_INLINE Float ggx_distribution(Float alpha, Vec h) {
   const Float s = fma(h.x, h.x, h.y * h.y) / a2 + h.z * h.z;
   return Float(1.f / pi) / (a2 * s * s);
 }
-/// G2 / (4 wo.z wi.z)
-CASTRAY_INLINE Float ggx_shadowing_over_cos(Float alpha, Vec wo, Vec wi) {
+/// G2 / (4 wo.z wi.z). `alpha`: Float, or GgxWidths.
+template <class Alpha>
+CASTRAY_INLINE Float ggx_shadowing_over_cos(const Alpha& alpha, Vec wo, Vec wi) {
   return Float(0.5f) / fma(wi.z, ggx_stretched_length(alpha, wo), wo.z * ggx_stretched_length(alpha, wi));
 }
 /// Part of the spherical cap that reflection above the horizon can need (Eto and Tokuyoshi 2023).
@@ -26,17 +27,52 @@ CASTRAY_INLINE Float ggx_cap_scale(Float alpha, Vec wo) {
   const Float s2 = square(Float(1.f) + sqrt(fma(wo.x, wo.x, wo.y * wo.y)));
   return (Float(1.f) - a2) * s2 / fma(a2, wo.z * wo.z, s2);
 }
-/// A normal visible from wo (Dupuy and Benyoub 2023).
-CASTRAY_INLINE Vec ggx_sample_normal(Float alpha, Vec wo, Float u, Float v, Float cap) {
-  const Vec w = Vec{alpha * wo.x, alpha * wo.y, wo.z} * (Float(1.f) / ggx_stretched_length(alpha, wo));
+/// A normal, not of unit length, visible from the unit vector w where alpha is 1.
+CASTRAY_INLINE Vec ggx_sample_cap(Vec w, Float u, Float v, Float cap) {
   const Float z = Float(1.f) - u * fma(cap, w.z, Float(1.f));
   const Float r = sqrt(max((Float(1.f) - z) * (Float(1.f) + z), Float(0.f)));
   const SinCos turn = sincos_turn(v);
-  const Vec h{fma(r, turn.cos, w.x), fma(r, turn.sin, w.y), z + w.z};
+  return {fma(r, turn.cos, w.x), fma(r, turn.sin, w.y), z + w.z};
+}
+/// A normal visible from wo (Dupuy and Benyoub 2023).
+CASTRAY_INLINE Vec ggx_sample_normal(Float alpha, Vec wo, Float u, Float v, Float cap) {
+  const Vec w = Vec{alpha * wo.x, alpha * wo.y, wo.z} * (Float(1.f) / ggx_stretched_length(alpha, wo));
+  const Vec h = ggx_sample_cap(w, u, v, cap);
   return normalize(Vec{alpha * h.x, alpha * h.y, max(h.z, Float(0.f))});
 }
 CASTRAY_INLINE Float ggx_reflection_pdf(Float alpha, Vec wo, Vec h, Float cap) {
   return ggx_distribution(alpha, h) / (Float(2.f) * fma(cap, wo.z, ggx_stretched_length(alpha, wo)));
+}
+
+/// The widths of a lobe that is not round: slopes are those of a round one of width 1, multiplied by the
+/// matrix (mean + x, y; y, mean - x), whose determinant is alpha^2.
+struct GgxWidths {
+  Float alpha, mean, x, y, least;
+
+  CASTRAY_INLINE Vec widen(const Vec& w) const {
+    return {fma(mean + x, w.x, y * w.y), fma(y, w.x, (mean - x) * w.y), w.z};
+  }
+  /// The inverse.
+  CASTRAY_INLINE Vec narrow(const Vec& w) const {
+    const Float scale = Float(1.f) / (alpha * alpha);
+    return {fma(mean - x, w.x, -(y * w.y)) * scale, fma(mean + x, w.y, -(y * w.x)) * scale, w.z};
+  }
+};
+/// `x`, `y`: slot_stretch.
+CASTRAY_INLINE GgxWidths ggx_widths(Float alpha, Float x, Float y) {
+  const Float strength2 = fma(x, x, y * y), mean = sqrt(Float(1.f) + strength2);
+  return {alpha, alpha * mean, alpha * x, alpha * y, alpha / (mean + sqrt(strength2))};
+}
+CASTRAY_INLINE Float ggx_stretched_length(const GgxWidths& a, Vec w) {
+  return sqrt(length_squared(a.widen(w)));
+}
+CASTRAY_INLINE Float ggx_distribution(const GgxWidths& a, Vec h) {
+  return Float(1.f / pi) / square(a.alpha * length_squared(a.narrow(h)));
+}
+CASTRAY_INLINE Float ggx_cap_scale(const GgxWidths& a, Vec wo) { return ggx_cap_scale(a.least, wo); }
+CASTRAY_INLINE Vec ggx_sample_normal(const GgxWidths& a, Vec wo, Float u, Float v, Float cap) {
+  const Vec h = ggx_sample_cap(a.widen(wo) * (Float(1.f) / ggx_stretched_length(a, wo)), u, v, cap);
+  return normalize(a.widen({h.x, h.y, max(h.z, Float(0.f))}));
 }
 
 /// Unpolarised Fresnel reflectance at cos_i >= 0, eta = n_t / n_i; 1 at total reflection.

@@ -18,6 +18,7 @@ enum MaterialTrait : uint32_t {
   trait_focuses = 128,  ///< not smooth, but all that it scatters stays in a narrow lobe, or passes through:
                         ///< what light it sends to other surfaces are caustics
   trait_emits_backwards = 256,  ///< on the back alone; never seen from the front
+  trait_stretched = 512,        ///< its lobes are not round
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as
@@ -30,6 +31,9 @@ enum ParameterSlot : int {
   slot_emission = 7,
   slot_metal_sheen = 10,  ///< principled: metallic and sheen, as a pair of 16 bits each
   slot_coat = 11,         ///< principled: clearcoat and its roughness, likewise
+  slot_stretch = 10,  ///< conductor: how far its lobe is from round, (1/r - r) / 2 for widths alpha / r and
+                      ///< alpha r, times cosine and sine of twice the angle from the shading frame's x
+                      ///< axis to where it is wide
   vertex_floats = 12,
   slot_coverage = 12,
   slot_metallic = 13,
@@ -66,7 +70,8 @@ struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
   float ior;
-  float eta[3], k[3];         ///< conductor: complex index of refraction; eta 0: constant reflectance
+  float eta[3], k[3];  ///< conductor: complex index of refraction; eta 0: constant reflectance
+  float turn[2];       ///< conductor: cosine and sine of the angle from where u grows to where lobes are wide
   float absorption[3];        ///< dielectric: inside it, over a unit of length in scene space
   uint32_t medium;            ///< dielectric: 1 + the material's index; else 0
   uint32_t type;              ///< MaterialType
@@ -138,7 +143,8 @@ struct MaterialTables {
   const KernelAlbedo* albedos;
   /// `materials` where one has a complex index, absorbs, or has another back; else null.
   const KernelMaterial *indices, *absorbing, *pairs;
-  bool filtered;  ///< whether a map reads the pixels' footprints
+  bool filtered;   ///< whether a map reads the pixels' footprints
+  bool stretched;  ///< whether some material has trait_stretched
 };
 
 /// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density

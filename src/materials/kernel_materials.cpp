@@ -34,6 +34,12 @@ float pack(double first, double second) {
   return std::bit_cast<float>(bits(first) | bits(second) << 16);
 }
 
+/// How far a metal's lobe is from round; see slot_stretch.
+float stretch_of(const Material& m) {
+  const double r = std::sqrt(1 - m.anisotropy);
+  return static_cast<float>((1 / r - r) / 2);
+}
+
 }  // namespace
 
 KernelMaterials::KernelMaterials(const Scene& scene) {
@@ -47,6 +53,9 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   k.ior = static_cast<float>(m.ior);
   put(k.eta, m.eta);
   put(k.k, m.k);
+  const double turn = m.anisotropy_rotation * (pi<double> / 180);
+  k.turn[0] = static_cast<float>(std::cos(turn));
+  k.turn[1] = static_cast<float>(std::sin(turn));
   put(k.absorption, m.absorption * scene.unit);
   if (m.type == MaterialType::dielectric) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
   k.back = static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : materials.size()) *
@@ -88,6 +97,7 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
                  [](double v) { return static_cast<float>(v); });
   k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
   k.value[slot_coat] = pack(values[slot_clearcoat], values[slot_clearcoat_roughness]);
+  if (k.traits & trait_stretched) detail.value[slot_stretch] = k.value[slot_stretch] = stretch_of(m);
 
   detail.normal = single_map(scene, m.map(SurfaceParameter::normal), 1);
   detail.bump = single_map(scene, m.map(SurfaceParameter::bump), static_cast<float>(1 / scene.unit));
@@ -108,17 +118,19 @@ MaterialTables KernelMaterials::tables() const {
   const auto where_any = [this](const auto& has_it) {
     return std::ranges::any_of(materials, has_it) ? materials.data() : nullptr;
   };
-  return {.materials = materials.data(),
-          .details = details.data(),
-          .albedos = albedos.data(),
-          .indices = where_any([](const KernelMaterial& m) { return m.eta[0] > 0; }),
-          .absorbing = where_any([](const KernelMaterial& m) {
-            return std::ranges::any_of(m.absorption, [](float a) { return a > 0; });
-          }),
-          .pairs = where_any([this](const KernelMaterial& m) {
-            return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
-          }),
-          .filtered = filtered_};
+  return {
+      .materials = materials.data(),
+      .details = details.data(),
+      .albedos = albedos.data(),
+      .indices = where_any([](const KernelMaterial& m) { return m.eta[0] > 0; }),
+      .absorbing = where_any([](const KernelMaterial& m) {
+        return std::ranges::any_of(m.absorption, [](float a) { return a > 0; });
+      }),
+      .pairs = where_any([this](const KernelMaterial& m) {
+        return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
+      }),
+      .filtered = filtered_,
+      .stretched = where_any([](const KernelMaterial& m) { return m.traits & trait_stretched; }) != nullptr};
 }
 
 std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lobe) {

@@ -61,8 +61,8 @@ struct Principled : ModelDefaults {
     Uint coat_albedo;
 
     CASTRAY_INLINE Layers(const Bsdf& bsdf, Vec from) : b(bsdf), wo(from) {
-      const auto [metallic, cloth] = unpack(b.metal_sheen);
-      const auto [covered, roughness] = unpack(b.coat);
+      const auto [metallic, cloth] = unpack(b.own[0]);
+      const auto [covered, roughness] = unpack(b.own[1]);
       const Float rest = Float(1.f) - metallic;
       f0 = fma(b.kd - b.ks, metallic, b.ks);
       base = base_under(b.albedos, b.albedo, b.kd, b.ks) * rest;

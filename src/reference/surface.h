@@ -67,7 +67,8 @@ class Surfaces {
         scene_.on_side(scene_.triangle_material[hit.triangle], dot(normal, to_viewer) > 0);
     const Material& m = scene_.materials[material];
     const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
-    const Frame<T> frame = make_frame(shading_normal(m, place, placement, normal, to_viewer));
+    const Frame<T> frame =
+        shading_frame(m, place, placement, normal, shading_normal(m, place, placement, normal, to_viewer));
     Surface<T> surface{point.p,
                        point.error,
                        T(placement.growth()),
@@ -134,6 +135,21 @@ class Surfaces {
     const Vec3<T> bent = bent_normal(scene_, m, place, placement, smooth);
     const bool usable = dot(bent, to_viewer) * dot(normal, to_viewer) > 0 && dot(bent, normal) > 0;
     return usable ? bent : smooth;
+  }
+
+  /// The frame of a shading normal; of an anisotropic metal its x axis is where the lobe is wide: seen along
+  /// the shading normal, a direction in the plane of the triangle.
+  template <class Placement>
+  Frame<T> shading_frame(const Material& m, const TrianglePlace<T>& place, const Placement& placement,
+                         const Vec3<T>& normal, const Vec3<T>& shading_normal) const {
+    if (!(m.anisotropy > 0)) return make_frame(shading_normal);
+    const auto move = uv_derivatives<T>(scene_, place.triangle, placement);
+    const Vec3<T> u = move ? normalize(move->du) : make_frame(normal).tangent;
+    const Vec3<T> v = cross(normal, u) * (move ? move->handedness : T(1));
+    const T turn = T(m.anisotropy_rotation) * pi<T> / 180;
+    const Vec3<T> along = u * std::cos(turn) + v * std::sin(turn);
+    const Vec3<T> tangent = normalize(along - shading_normal * dot(along, shading_normal));
+    return {tangent, cross(shading_normal, tangent), shading_normal};
   }
 
   const Scene& scene_;

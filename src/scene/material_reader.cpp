@@ -52,6 +52,10 @@ class MaterialReader {
       throw InputError(roughness->key_place, "give \"roughness\" or \"alpha\" (= roughness^2), not both");
     for (const MaterialKey& key : descriptor.keys)
       if (const JsonNode* found = reader.find(key.name)) read_key(key, *found);
+    if (material_.anisotropy > 0 && material_.multiple_scattering)
+      throw InputError(reader.find("anisotropy")->key_place,
+                       "\"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "
+                       "lobes; leave one of them out");
     return std::move(material_);
   }
 

@@ -18,6 +18,7 @@ SceneNeeds needs_of(const Scene& scene) {
     const Material& m = scene.materials[i];
     needs.textures |= m.has_maps_of_values() && !scene.triangle_uvs.empty();
     needs.textures |= m.vertex_colors && !scene.triangle_colors.empty();
+    needs.textures |= (traits_of(m) & trait_stretched) != 0;
     needs.specular |= (traits_of(m) & (trait_specular | trait_focuses)) != 0;
     needs.glossy |= (traits_of(m) & trait_directional) && (traits_of(m) & trait_shareable);
     needs.bent_normals |= (traits_of(m) & trait_bent) != 0;

@@ -11,7 +11,8 @@ namespace castray {
 struct SceneNeeds {
   std::size_t triangles = 0, lights = 0;  ///< lights: emitting triangles
   std::size_t instances = 0;              ///< that share the triangles of their object
-  bool textures = false, smooth_normals = false;
+  bool textures = false;                  ///< or lobes that lie by texture coordinates
+  bool smooth_normals = false;
   std::set<MaterialType> types;  ///< of materials
   bool specular = false;         ///< a perfectly smooth mirror or glass
   bool glossy = false;        ///< a surface that reflects other than by Lambert's model, and not as a mirror

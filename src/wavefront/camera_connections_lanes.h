@@ -1,5 +1,6 @@
 #pragma once
 
+#include "materials/stretch_lanes.h"
 #include "cameras/camera_lanes.h"
 #include "wavefront/light_normals_lanes.h"
 #include "wavefront/trace_lanes.h"
@@ -76,11 +77,14 @@ CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, uint32_t 
     const Uint entry = select(active, load(to.rays.names.slot + i), Uint(0u));
     const Vec d = load(to.rays.d, i), normal = gather_entries(vertices.normal, entry);
     const Vec wo = -normalize(d), wi = gather_entries(vertices.wo, entry);
-    Vec shading_normal = gather_entries(vertices.shading_normal, entry);
-    if constexpr (features & feature_detail) shading_normal = normal_seen_from(shading_normal, normal, wo);
+    const Vec kept = gather_entries(vertices.shading_normal, entry);
+    Vec shading_normal = kept;
+    if constexpr (features & feature_detail) shading_normal = normal_seen_from(kept, normal, wo);
     const Frame frame = make_frame(shading_normal);
-    const Bsdf bsdf = gather_bsdf(c.scene, gather(vertices.material, entry),
-                                  gather_entries<features>(vertices.parameters, entry));
+    Bsdf bsdf = gather_bsdf(c.scene, gather(vertices.material, entry),
+                            gather_entries<features>(vertices.parameters, entry));
+    if constexpr (features & feature_detail)
+      if (c.scene.stretched) relay_lobes(active, kept, shading_normal, normal, bsdf);
     const BsdfValue value = evaluate(bsdf, to_local(frame, wo), to_local(frame, wi));
     const Float cos_light = max(abs(dot(normal, wi)), Float(0x1p-60f));
     const Uint slot = gather(vertices.names.slot, entry);

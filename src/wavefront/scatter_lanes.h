@@ -1,5 +1,6 @@
 #pragma once
 
+#include "materials/stretch_lanes.h"
 #include "wavefront/absorption_lanes.h"
 #include "wavefront/guided_lanes.h"
 #include "wavefront/light_normals_lanes.h"
@@ -66,7 +67,10 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
       if constexpr (features & feature_detail)
         if (transport != Transport::from_camera)
           normal = choose_normal(kept, load(vertices.normal, i), wo, n.u[2]);
-      const Shading shading = shading_of<features>(c.scene, vertices, i, normal.n);
+      Shading shading = shading_of<features>(c.scene, vertices, i, normal.n);
+      if constexpr (features & feature_detail)
+        if (transport != Transport::from_camera && c.scene.stretched)
+          relay_lobes(normal.geometric, kept, normal.n, shading.normal, shading.bsdf);
       const BsdfSample s = transport == Transport::from_camera
                                ? sample_guided(c, vertices, i, vertex, shading, choice.u[1], n.u[0], n.u[1])
                                : sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);

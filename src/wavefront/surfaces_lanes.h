@@ -5,6 +5,7 @@
 #include "lights/light_share_lanes.h"
 #include "lights/lights_lanes.h"
 #include "materials/normals_lanes.h"
+#include "materials/stretch_lanes.h"
 #include "materials/surface_values_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/radiance_lanes.h"
@@ -114,6 +115,9 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
         const Vec viewer = from_light ? facing : to_viewer;
         shading_normal = smooth_normal(triangles, placement, place, facing, viewer);
         bend_normals(scene, triangles, placement, material, place, front, facing, viewer, shading_normal);
+        if (scene.stretched)
+          lay_lobes(scene, triangles, placement, material, place, front, facing, shading_normal,
+                    parameters.value);
       }
       compress_store(out.wo, n, kept, to_viewer);
       compress_store(out.shading_normal, n, kept, shading_normal);

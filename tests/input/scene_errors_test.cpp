@@ -259,6 +259,11 @@ const std::vector<Case> cases = {
     in_line("an unknown metal",
             R"(  "materials": { "a": { "type": "conductor", "reflectance": "aluminum" } },)",
             "s.json:2:61: unknown metal 'aluminum'; did you mean 'aluminium'?"),
+    in_line(
+        "brushed metal with tables of round lobes",
+        R"(  "materials": { "a": { "type": "conductor", "anisotropy": 0.5, "multiple_scattering": true } },)",
+        "s.json:2:46: \"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "
+        "lobes; leave one of them out"),
     in_line("a grey above 1", R"(  "materials": { "a": { "type": "diffuse", "kd": 1.5 } },)",
             "s.json:2:50: \"kd\" must be at least 0 and at most 1, not 1.5"),
     in_line("an index without its imaginary part",

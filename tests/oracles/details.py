@@ -61,6 +61,11 @@ CASES = {
         None,
         lambda: twosided({"type": "roughconductor", "distribution": "ggx", "alpha": 0.25,
                           "eta": {"type": "rgb", "value": [0.2, 0.9, 2.5]}, "k": {"type": "rgb", "value": [3.4, 1.5, 0.8]}})),
+    "brushed": (
+        {"type": "conductor", "reflectance": [0.9, 0.7, 0.5], "alpha": 0.09, "anisotropy": 0.75, "anisotropy_rotation": 90},
+        None,
+        lambda: twosided({"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha_u": 0.045, "alpha_v": 0.18,
+                          "specular_reflectance": {"type": "rgb", "value": [0.9, 0.7, 0.5]}})),
     "pair": (
         {"type": "two_sided", "front": {"type": "diffuse", "kd": {"image": "colours.png"}},
          "back": {"type": "conductor", "reflectance": {"eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0.8]}, "roughness": 0.5}},

@@ -38,7 +38,7 @@ void check(const std::string& file, const Expected& expected, Way way) {
 
 const std::string golden = std::string(CASTRAY_ROOT) + "/tests/golden/";
 const std::vector<std::string> details{"colours", "holes", "normals", "heights", "metal", "mirror"},
-    without_images{"index", "glass", "pair"};
+    without_images{"index", "glass", "pair", "brushed"};
 
 /// By every way of rendering: 18 tests a scene.
 void check_against_mitsuba(const std::string& folder, const std::vector<std::string>& names) {
@@ -53,7 +53,9 @@ TEST_CASE("images on materials are as Mitsuba shows them, by every way of render
   check_against_mitsuba("details/", details);
 }
 
-TEST_CASE("metal by its index, glass that absorbs and pairs of materials are as Mitsuba shows them", "[statistical]") {
+TEST_CASE(
+    "metal by its index, brushed metal, glass that absorbs and pairs of materials are as Mitsuba shows them",
+    "[statistical]") {
   for (const std::string& name : without_images) {
     const std::string file = golden + "details/" + name;
     check(file + ".json", Expected(file), {"plain", plain(wavefront_options(64, 8, 2))});

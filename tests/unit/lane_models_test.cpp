@@ -51,6 +51,10 @@ std::vector<Material> all_materials() {
       if (index) list.back().eta = {0.2, 0.9, 2.5}, list.back().k = {3.4, 1.5, 0.8};
       list.back().multiple_scattering = alpha > 0.05 || !index;
     }
+  for (const double alpha : {0.0, 0.05, 0.3, 1.0}) {
+    list.push_back(material(MaterialType::conductor, alpha));
+    list.back().anisotropy = 0.8;
+  }
   return list;
 }
 

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "geometry/placement_lanes.h"
+#include "materials/normals_lanes.h"
+
+// How the lobes of anisotropic metals lie on a surface: along a direction in the plane of the triangle, at an
+// angle from the one in which u grows, and along what that is in the plane across the shading normal, seen
+// along it.
+
+namespace castray::CASTRAY_ISA {
+
+/// slot_stretch for lobes of this strength in a frame with this normal, wide along `along`. Doubled angles
+/// have no sense of direction.
+struct Stretch {
+  Float x, y;
+};
+CASTRAY_INLINE Stretch stretch_along(const Frame& frame, const Vec& along, Float strength) {
+  const Float x = dot(along, frame.s), y = dot(along, frame.t), scale = strength / fma(x, x, y * y);
+  return {fma(x, x, -(y * y)) * scale, Float(2.f) * x * y * scale};
+}
+
+/// Lays the lobes of materials that have such ones: turns `value`'s slot_stretch to the frame of the shading
+/// normal, which is on the viewer's side as `facing` is. `front`: that is the geometric normal's side.
+template <class Placement>
+__attribute__((noinline)) void lay_lobes(const MaterialTables& tables, const TriangleTable& table,
+                                         const Placement& placement, const Uint& material,
+                                         const TrianglePlace& at, const Mask& front, const Vec& facing,
+                                         const Vec& shading_normal, Float* value) {
+  const Mask stretched = has_traits(tables, material, trait_stretched);
+  if (none(stretched)) return;
+  const Vec outward = select(front, facing, -facing);
+  Vec u = make_frame(outward).s;
+  Float handedness(1.f);
+  if (table.uv_corners) {
+    const UvDerivatives d = uv_derivatives(table, placement, at.triangle);
+    u = select(d.valid, normalize(d.du), u);
+    handedness = select(d.valid, d.handedness, handedness);
+  }
+  const float* turn = fields_of(tables.materials, &KernelMaterial::turn);
+  const Vec v = cross(outward, u) * handedness,
+            along = fma(v, gather(turn + 1, material), u * gather(turn, material));
+  const Stretch laid = stretch_along(make_frame(shading_normal), along, value[slot_stretch]);
+  value[slot_stretch] = select(stretched, laid.x, value[slot_stretch]);
+  value[slot_stretch + 1] = select(stretched, laid.y, value[slot_stretch + 1]);
+}
+
+/// Lays the lobes of `b`, which lie as the shading normal `from` has it, as `to` has it, in `lanes`.
+/// `normal`: the geometric one.
+inline __attribute__((noinline)) void relay_lobes(const Mask& lanes, const Vec& from, const Vec& to,
+                                                  const Vec& normal, Bsdf& b) {
+  const Float strength = sqrt(fma(b.own[0], b.own[0], b.own[1] * b.own[1]));
+  const Mask stretched = lanes & b.is(MaterialType::conductor) & (strength > Float(0.f));
+  if (none(stretched)) return;
+  const Float cos2 = b.own[0] / strength, half(0.5f);
+  const Float c = sqrt(max(fma(cos2, half, half), Float(0.f)));
+  const Float s = copy_sign(sqrt(max(fma(cos2, -half, half), Float(0.f))), b.own[1]);
+  const Frame before = make_frame(from);
+  const Vec across = fma(before.t, s, before.s * c);
+  const Vec along = across - from * (dot(across, normal) / dot(from, normal));
+  const Stretch laid = stretch_along(make_frame(to), along, strength);
+  b.own[0] = select(stretched, laid.x, b.own[0]);
+  b.own[1] = select(stretched, laid.y, b.own[1]);
+}
+
+}  // namespace castray::CASTRAY_ISA
