@@ -141,7 +141,7 @@ struct Scene {
   std::uint64_t expanded_instances = 0;   ///< that became meshes of their own
   std::vector<std::string> ignored_keys;  ///< "FILE: key", of MTL files
   std::vector<SceneWarning> warnings;     ///< in the order in which they were met
-  bool default_environment = false;       ///< the environment is no file's: nothing in the scene emits
+  bool default_environment = false;       ///< the environment is no file's: nothing in the scene emits more
 
   static constexpr std::uint32_t no_index = 0xffffffffu;
 
@@ -183,7 +183,7 @@ struct Scene {
 
 /// A view, in scene space, that frames all of `scene` in its image size. It looks from the front right above
 /// (+z, +x, +y), unless from there it would see much less of what faces a light, or of the surfaces' outward
-/// sides, than from another of ten directions: a room is looked into from its open side.
+/// sides, than from another of nine directions: a room is looked into from its open side.
 Camera automatic_camera(const Scene& scene);
 
 /// Reads a scene .json, a .gltf or .glb, an .obj or a .ply (seen by an automatic view, where there is no

@@ -68,7 +68,12 @@ struct Sight {
   int front = 0;  ///< of them, those that show its outward side
   int lit = 0;    ///< and those that face a light, or shine
 
-  double merit() const { return seen > 0 ? (front + 2.0 * lit) / seen : 0; }
+  /// In [0,1]: the share of what is seen that is outward; where there are lights, facing one counts twice as
+  /// much.
+  double merit(bool lights) const {
+    if (seen == 0) return 0;
+    return lights ? (front + 2.0 * lit) / (3.0 * seen) : static_cast<double>(front) / seen;
+  }
 };
 
 Sight look(const Camera& camera, const Scene& scene, const std::vector<SurfacePoint>& points,
@@ -120,26 +125,30 @@ Camera automatic_camera(const Scene& scene) {
   std::vector<Vec3d> corners;
   for (const Vec3d& corner : Box3d{low, high}.corners()) corners.push_back(corner - middle);
 
-  // From where to look, the usual views first; a later one must show clearly more.
-  constexpr double clearly = 1.15;
+  // From where to look, the usual view first; a later one must show clearly more. Leaves and thin parts show
+  // either side about as often: they are no reason to look straight down or up, as at a room without its
+  // ceiling.
+  constexpr double clearly = 1.5, enough = 0.4;
   const Vec3d viewpoints[] = {{0.5, 0.4, 1}, {1, 0.4, -0.5}, {-0.5, 0.4, -1}, {-1, 0.4, 0.5}, {0, 0, 1},
                               {1, 0, 0},     {0, 0, -1},     {-1, 0, 0},      {0, 1, 0},      {0, -1, 0}};
   Camera best;
-  double best_merit = 0;
+  double best_merit = 0, usual_merit = 0;
   int usual_seen = 0;
   for (const Vec3d& towards_viewer : viewpoints) {
     const bool vertical = towards_viewer.x == 0 && towards_viewer.z == 0;
+    if (vertical && usual_merit >= enough) break;
     Camera camera =
         frame(scene, -towards_viewer, vertical ? Vec3d{0, 0, -towards_viewer.y} : Vec3d{0, 1, 0}, corners);
     camera.position = camera.position + middle;
     const Sight sight = look(camera, scene, points, lights);
+    const double merit = sight.merit(!lights.empty());
     if (&towards_viewer == viewpoints) {
       best = camera;
-      best_merit = sight.merit();
+      best_merit = usual_merit = merit;
       usual_seen = sight.seen;
-    } else if (sight.seen > usual_seen / 3 && sight.merit() > clearly * best_merit) {
+    } else if (sight.seen > usual_seen / 3 && merit > clearly * best_merit) {
       best = camera;
-      best_merit = sight.merit();
+      best_merit = merit;
     }
   }
   return best;

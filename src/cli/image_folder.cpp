@@ -6,6 +6,7 @@
 
 #include "castray/error.h"
 #include "castray/image.h"
+#include "core/text.h"
 
 namespace castray::cli {
 
@@ -26,8 +27,8 @@ std::string size_text(const std::filesystem::path& folder) {
   double bytes = 0;
   for (const std::string& name : names)
     bytes += static_cast<double>(std::filesystem::file_size(folder / name));
-  return fmt::format("{} image{}, {:.2g} MB", names.size(), names.size() == 1 ? "" : "s",
-                     std::max(bytes, 1e4) / 1e6);
+  return fmt::format("{} image{}, {} MB", names.size(), names.size() == 1 ? "" : "s",
+                     two_digits(std::max(bytes, 1e4) / 1e6));
 }
 
 }  // namespace castray::cli

@@ -109,7 +109,9 @@ void print_lights(const Scene& scene) {
   if (!scene.delta_lights.empty()) fmt::print("; {} without size", scene.delta_lights.size());
   if (max_component(scene.environment) > 0)
     fmt::print("; environment {}{}{}", text_of(scene.environment), environment_image_text(scene),
-               scene.default_environment ? ", as nothing in the scene emits" : "");
+               !scene.default_environment ? ""
+               : scene.lights.empty()     ? ", as nothing in the scene emits"
+                                          : ", as nothing in the scene emits more");
   fmt::print("\n");
 }
 

@@ -1,7 +1,10 @@
 #include "core/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace castray {
 
@@ -11,6 +14,13 @@ std::string printable(std::string_view text, std::size_t longest) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
   if (text.size() > longest) result += "...";
   return result;
+}
+
+std::string two_digits(double value) {
+  if (value < 99.5) return fmt::format("{:.2g}", value);
+  if (!(value < 995e3)) return "more than a million";
+  const double unit = std::pow(10, std::floor(std::log10(value * 1.005)) - 1);
+  return fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
 
 std::string escape_item(std::string_view text) {

@@ -7,6 +7,7 @@
 
 #include "castray/error.h"
 #include "core/contract.h"
+#include "core/text.h"
 #include "geometry/build_quality.h"
 #include "lights/light_share.h"
 #include "materials/descriptor.h"
@@ -57,7 +58,7 @@ BuildQuality build_quality(const Scene& scene, const RenderOptions& options, con
 /// How many times as good something is: with two digits behind the point where it is hardly better or worse.
 std::string times(double factor) {
   const bool near_tie = factor > 0.95 && factor < 1.05;
-  return near_tie ? fmt::format("{:.2f} times", factor) : fmt::format("{:.2g} times", factor);
+  return near_tie ? fmt::format("{:.2f} times", factor) : two_digits(factor) + " times";
 }
 
 std::string kernel_name(const Plan& plan) {
@@ -155,9 +156,9 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain) {
 void choose_by_pilot(Plan& plan, double gain_of_sharing, double error) {
   constexpr double enough = 1.5;
   if (gain_of_sharing < std::min(error, enough)) plan.suffixes = 0;
-  plan.kernel = fmt::format(
-      "{} (by a pilot, sharing is {} as efficient as plain paths, give or take a factor of {:.2g})",
-      kernel_name(plan), times(gain_of_sharing), error);
+  plan.kernel =
+      fmt::format("{} (by a pilot, sharing is {} as efficient as plain paths, give or take a factor of {})",
+                  kernel_name(plan), times(gain_of_sharing), two_digits(error));
 }
 
 }  // namespace castray

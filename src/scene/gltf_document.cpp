@@ -104,21 +104,46 @@ void check_extensions(const JsonNode& json, const std::string& name, bool is_bin
           is_one_of(used.text, harmless_extensions) ? Harm::none : Harm::changes_picture);
 }
 
+void check_version(const JsonNode& json, const std::string& name, bool is_binary) {
+  const JsonNode* version = member(member(&json, "asset"), "version");
+  const JsonNode* accessors = member(&json, "accessors");
+  const bool is_first = accessors && accessors->type == JsonNode::Type::object;  // it held them by name
+  if (!is_first && (!version || version->text.starts_with("2."))) return;
+  throw InputError(is_binary ? SourcePlace{name} : (version ? version : accessors)->place,
+                   fmt::format("version {} of glTF; version 2 is read: export the file anew, or convert it",
+                               version && !is_first ? printable(version->text) : "1"));
+}
+
 /// What tinygltf asks of the file system. It reads buffers first, in their order, then images, which are not
 /// wanted yet.
 struct FileAccess {
-  std::vector<std::size_t> buffer_lengths;  ///< of those in files of their own
+  struct Buffer {
+    std::size_t index, length;
+    std::string uri;
+  };
+  std::vector<Buffer> buffers;  ///< those in files of their own
   std::size_t buffers_read = 0;
 
   explicit FileAccess(const JsonNode& json) {
+    std::size_t index = 0;
     for (const JsonNode& buffer : list_of(json, "buffers")) {
       const JsonNode *uri = member(&buffer, "uri"), *length = member(&buffer, "byteLength");
       if (uri && !uri->text.empty() && !uri->text.starts_with("data:"))
-        buffer_lengths.push_back(length && length->number > 0 ? static_cast<std::size_t>(length->number) : 0);
+        buffers.push_back(
+            {index, length && length->number > 0 ? static_cast<std::size_t>(length->number) : 0, uri->text});
+      ++index;
     }
   }
 
-  bool wants_image() const { return buffers_read == buffer_lengths.size(); }
+  bool wants_image() const { return buffers_read == buffers.size(); }
+
+  void fail_of_missing(const GltfDocument& document) const {
+    if (wants_image()) return;
+    const Buffer& buffer = buffers[buffers_read];
+    document.fail("buffers", buffer.index,
+                  fmt::format("no such file: {}; put it beside the glTF file, or export one .glb",
+                              printable(buffer.uri)));
+  }
 
   static bool exists(const std::string& path, void* self) {
     return !static_cast<FileAccess*>(self)->wants_image() && is_file(path);
@@ -128,7 +153,7 @@ struct FileAccess {
   static bool read(std::vector<unsigned char>* bytes, std::string*, const std::string& path, void* self) {
     auto& access = *static_cast<FileAccess*>(self);
     const std::string content = read_file(path);
-    const std::size_t length = std::min(content.size(), access.buffer_lengths[access.buffers_read++]);
+    const std::size_t length = std::min(content.size(), access.buffers[access.buffers_read++].length);
     bytes->assign(content.begin(), content.begin() + static_cast<std::ptrdiff_t>(length));
     return true;
   }
@@ -189,9 +214,10 @@ GltfDocument parse_gltf(std::string_view bytes, const std::filesystem::path& fil
   if (bytes.size() > std::numeric_limits<unsigned>::max())
     throw InputError(SourcePlace{name}, "longer than 4 GiB; put its buffers into files of their own");
   document.json = parse_json(document.is_binary ? json_of_binary(bytes, name) : bytes, name);
-  check_extensions(document.json, name, document.is_binary, warnings);
   if (document.json.type != JsonNode::Type::object)
     throw InputError(document.json.place, "a glTF file is an object in braces");
+  check_version(document.json, name, document.is_binary);
+  check_extensions(document.json, name, document.is_binary, warnings);
   FileAccess access(document.json);
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(
@@ -213,6 +239,7 @@ GltfDocument parse_gltf(std::string_view bytes, const std::filesystem::path& fil
   } catch (const std::exception& odd) {
     error = odd.what();
   }
+  if (!loaded && error.starts_with("File not found")) access.fail_of_missing(document);
   if (!loaded) throw InputError(SourcePlace{name}, first_line(error));
   return document;
 }

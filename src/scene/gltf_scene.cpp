@@ -70,8 +70,16 @@ Mesh moved(Mesh mesh, const Transform& transform) {
   return mesh;
 }
 
-JsonNode parsed(const nlohmann::ordered_json& json, const GltfDocument& document) {
-  return parse_json(json.dump(), document.path.string());
+void put_at(JsonNode& node, const SourcePlace& place) {
+  node.place = node.key_place = place;
+  for (JsonNode& child : node.children) put_at(child, place);
+}
+
+/// What was made of a node of the file, as a scene file would have it; its faults are told at that node.
+JsonNode parsed(const nlohmann::ordered_json& json, const GltfDocument& document, const GltfPlaced& placed) {
+  JsonNode made = parse_json(json.dump(), document.path.string());
+  put_at(made, document.place("nodes", placed.node));
+  return made;
 }
 
 void add_meshes(const GltfDocument& document, const std::vector<GltfPlaced>& meshes,
@@ -128,15 +136,17 @@ Scene scene_of_gltf(const GltfDocument& document, const GltfNodes& nodes, Warnin
   builder.warnings = std::move(warnings);
   builder.scene.file = document.path;
   builder.scene.name = document.path.stem().string();
+  builder.is_asset = true;
   add_meshes(document, nodes.meshes, {}, {}, builder, {});
   for (const GltfPlaced& light : nodes.lights)
     builder.scene.delta_lights.push_back(
-        read_delta_light(parsed(light_json(document, light, builder.warnings), document)));
+        read_delta_light(parsed(light_json(document, light, builder.warnings), document, light)));
   std::vector<SceneCamera>& cameras = builder.scene.cameras;
   for (const std::string& name : camera_names(document, nodes)) {
     const GltfPlaced& placed = nodes.cameras[cameras.size()];
     const auto [width, height] = size_of_aspect(aspect_of(document, placed), default_longest_side);
-    cameras.push_back({name, read_camera(parsed(camera_json(document, placed), document)), width, height});
+    cameras.push_back(
+        {name, read_camera(parsed(camera_json(document, placed), document, placed)), width, height});
   }
   return builder.finish();
 }

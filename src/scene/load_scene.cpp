@@ -21,6 +21,7 @@ Scene scene_of_mesh(const std::filesystem::path& file, const std::function<ObjFi
   SceneBuilder builder;
   builder.scene.file = file;
   builder.scene.name = file.stem().string();
+  builder.is_asset = true;
   ObjMaterials materials(builder);
   builder.add(make_mesh(read(builder.warnings), {}, materials), file);
   return builder.finish();

@@ -213,7 +213,7 @@ class PlyReader {
 }  // namespace
 
 ObjFile parse_ply(std::string_view bytes, const std::filesystem::path& file, WarningList& warnings) {
-  PlyHeader header = read_ply_header(bytes, file);
+  PlyHeader header = read_ply_header(bytes, file, warnings);
   if (header.encoding == PlyEncoding::ascii)
     return PlyReader<PlyTextValues>(bytes, std::move(header), file, warnings).read();
   return PlyReader<PlyBinaryValues>(bytes, std::move(header), file, warnings).read();

@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "castray/error.h"
+#include "core/nearest.h"
 #include "core/text.h"
 #include "scene/names.h"
 
@@ -30,7 +31,8 @@ constexpr std::array<TypeName, 8> types{{{"char", "int8", 1},
 
 class HeaderReader {
  public:
-  HeaderReader(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file) {}
+  HeaderReader(std::string_view text, const std::filesystem::path& file, WarningList& warnings)
+      : text_(text), file_(file), warnings_(warnings) {}
 
   PlyHeader read() {
     if (!text_.starts_with("ply"))
@@ -52,7 +54,7 @@ class HeaderReader {
       } else if (key == "comment") {
         if (word() == "TextureFile") header_.texture = trimmed(line_);
       } else if (!key.empty() && key != "obj_info") {
-        fail(fmt::format("unknown word '{}' in the header", printable(key)));
+        pass_over(key);
       }
     }
     if (!has_format) fail("the header has no line 'format'");
@@ -85,6 +87,14 @@ class HeaderReader {
     const std::string_view found = line_.substr(0, std::min(line_.find_first_of(" \t"), line_.size()));
     line_.remove_prefix(found.size());
     return found;
+  }
+
+  /// Some programs' remarks have no "comment" in front; what is nearly a word of the format is none.
+  void pass_over(std::string_view key) {
+    const std::string what = fmt::format("unknown word '{}' in the header", printable(key));
+    const std::string_view meant = nearest(key, {"format", "element", "property", "end_header"});
+    if (!meant.empty()) fail(fmt::format("{}; did you mean '{}'?", what, meant));
+    warnings_.add({file_.string(), header_.lines}, what + "; its line is left out", Harm::none);
   }
 
   void read_format() {
@@ -126,6 +136,7 @@ class HeaderReader {
 
   std::string_view text_, line_, line_end_;
   const std::filesystem::path& file_;
+  WarningList& warnings_;
   std::size_t at_ = 0;
   PlyHeader header_;
 };
@@ -134,8 +145,8 @@ class HeaderReader {
 
 std::size_t size_of(PlyType type) { return types[static_cast<std::size_t>(type)].size; }
 
-PlyHeader read_ply_header(std::string_view text, const std::filesystem::path& file) {
-  return HeaderReader(text, file).read();
+PlyHeader read_ply_header(std::string_view text, const std::filesystem::path& file, WarningList& warnings) {
+  return HeaderReader(text, file, warnings).read();
 }
 
 }  // namespace castray

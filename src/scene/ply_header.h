@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/warning_list.h"
+
 namespace castray {
 
 /// A type of PLY's numbers, in the order of their names in the format.
@@ -36,7 +38,7 @@ struct PlyHeader {
   std::optional<std::string> texture;  ///< of MeshLab's "comment TextureFile NAME"
 };
 
-/// Throws InputError with file and line of what is broken.
-PlyHeader read_ply_header(std::string_view text, const std::filesystem::path& file);
+/// Warns of lines that are none of the format's. Throws InputError with file and line of what is broken.
+PlyHeader read_ply_header(std::string_view text, const std::filesystem::path& file, WarningList& warnings);
 
 }  // namespace castray

@@ -336,9 +336,9 @@ void SceneBuilder::warn_of_rounding() {
   if (moved == 0) return;
   warnings.add({scene.file.string()},
                fmt::format("{} of {} triangles are so small beside the whole scene that rounding moves their "
-                           "corners, by up to {:.2g} % of their "
-                           "longest edge; bring far parts nearer or leave them out",
-                           moved, mesh_.triangles.size(), 100 * most));
+                           "corners, by {} their longest edge; bring far parts nearer or leave them out",
+                           moved, mesh_.triangles.size(),
+                           most < 1 ? fmt::format("up to {} % of", two_digits(100 * most)) : "more than"));
 }
 
 void SceneBuilder::warn_of_missing_uvs() {
@@ -381,6 +381,9 @@ void SceneBuilder::drop_flat() {
 
 namespace {
 
+/// Radiance of the sky of a scene without lights.
+constexpr double default_sky = 1;
+
 /// Factors of images are in range, and so are their values: products of both may not be.
 void check_brightness(const Scene& scene) {
   const double brightest = brightest_emission(scene);
@@ -405,6 +408,12 @@ void SceneBuilder::move_lights_to_scene_space() {
                 "lights[{}]: intensity / d^2 is {:g} where d, {:g}, is the size of the scene; it must be {}",
                 i, light.intensity[c], scene.unit, radiance_range.text()));
   }
+}
+
+/// A screen or a dial that glows, no brighter than white paper under the sky, is not what lights an asset.
+bool SceneBuilder::needs_sky() const {
+  if (environment_given || !scene.delta_lights.empty()) return false;
+  return scene.lights.empty() || (is_asset && brightest_emission(scene) <= default_sky);
 }
 
 /// The first camera is the scene's.
@@ -449,8 +458,8 @@ Scene SceneBuilder::finish() {
   for (std::uint32_t t = 0; t < scene.own_triangles(); ++t)
     if (scene.emits(scene.triangle_material[t])) scene.lights.push_back(t);
   move_lights_to_scene_space();
-  scene.default_environment = scene.lights.empty() && scene.delta_lights.empty() && !environment_given;
-  if (scene.default_environment) scene.environment = Vec3d(1);
+  scene.default_environment = needs_sky();
+  if (scene.default_environment) scene.environment = Vec3d(default_sky);
   place_cameras();
   return std::move(scene);
 }

@@ -31,6 +31,8 @@ class SceneBuilder {
   Scene scene;  ///< all but what `finish` fills in; cameras and lights without size are in the world
   Instancing instancing = Instancing::automatic;  ///< automatic: kept where there are many triangles
   bool environment_given = false;                 ///< else, where nothing emits, the scene gets a white one
+  bool is_asset =
+      false;  ///< another program's file alone: it gets one, too, where nothing is brighter than it
   WarningList warnings;
   FileFinder files;
 
@@ -89,6 +91,7 @@ class SceneBuilder {
   void warn_of_missing_uvs();
   void drop_flat();  ///< what rounding has made so
   void require_triangles() const;
+  bool needs_sky() const;
   void move_lights_to_scene_space();
   void place_cameras();
 

@@ -77,6 +77,22 @@ TEST_CASE("a mesh without lights is lit by a white sky, or by the environment of
   CHECK(brightest(mesh.image()) == 0);
 }
 
+TEST_CASE("a mesh whose screen glows no brighter than white is lit by the sky, one with a lamp is not") {
+  const std::string screen = "mtllib m.mtl\nusemtl wall\n" + square + "f 1 2 3\nusemtl screen\nf 1 3 4\n";
+  const std::string wall = "newmtl wall\nKd .5 .5 .5\nnewmtl screen\nKd 0 0 0\n";
+  const Mesh dial(screen, wall + "Ke 0.2 1 0.2\n");
+  const RunResult outcome = dial.render({"--look-from", "1,0,3"});
+  CHECK_THAT(outcome.err, Contains("nothing in o.obj emits more than white, so a white sky does"));
+  CHECK(dial.middle().x == Approx(0.5).epsilon(0.01));
+  CHECK(brightest(dial.image()) == 1);
+  CHECK_THAT(
+      run_castray({"info", "o.obj"}, dial.folder.path()).out,
+      Contains("lights     1 triangles: screen; environment (1, 1, 1), as nothing in the scene emits more"));
+  CHECK_FALSE(load_scene(Mesh(screen, wall + "Ke 0.2 1.1 0.2\n").folder / "o.obj").default_environment);
+  std::ofstream(dial.folder / "s.json") << R"({ "meshes": [ { "obj": "o.obj" } ] })";
+  CHECK_FALSE(load_scene(dial.folder / "s.json").default_environment);
+}
+
 TEST_CASE("info tells what of which image each parameter reads, and how") {
   const Mesh mesh("mtllib m.mtl\nusemtl a\n" + square + "vt 0 0\nf 1/1 2/1 3/1\n",
                   "newmtl a\nKd .9 .8 .7\nmap_Kd -s 2 3 -o .5 0 -clamp on g.ppm\nPr .5\n"
@@ -106,6 +122,22 @@ TEST_CASE("a room without its front is looked into, from wherever the front was"
     const Scene scene = load_scene(folder / "o.obj");
     CHECK(dot(scene.camera.forward, -towards_viewer) > 0.99);
   }
+}
+
+TEST_CASE("a plant in a pot is not looked at from below, where all that is seen is outward") {
+  std::string plant =  // a slab
+      "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 .1 -1\nv 1 .1 -1\nv 1 .1 1\nv -1 .1 1\n"
+      "f 1 2 3 4\nf 8 7 6 5\n";
+  for (int leaf = 0; leaf < 12; ++leaf) {  // upright squares; every other one shows its inward side
+    const double x = leaf % 4 * 0.5 - 0.9, z = leaf / 4 * 0.5 - 0.5;
+    for (const auto& [dx, dy] : {std::pair{0.0, 0.0}, {0.4, 0.0}, {0.4, 0.6}, {0.0, 0.6}})
+      plant += "v " + std::to_string(x + dx) + " " + std::to_string(0.5 + dy) + " " +
+               std::to_string(z + dx / 3) + "\n";
+    plant += leaf % 2 ? "f -1 -2 -3 -4\n" : "f -4 -3 -2 -1\n";
+  }
+  const TemporaryFolder folder;
+  std::ofstream(folder / "o.obj") << plant;
+  CHECK(dot(load_scene(folder / "o.obj").camera.forward, normalize(Vec3d{-0.5, -0.4, -1})) > 0.999);
 }
 
 TEST_CASE("the view that info prints, as flags or as JSON, is the automatic one") {

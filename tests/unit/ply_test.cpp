@@ -116,6 +116,16 @@ TEST_CASE("PLY: ASCII and binary of both byte orders hold the same") {
     }
 }
 
+TEST_CASE("PLY: a remark without \"comment\" in the header is passed over") {
+  std::string remark = triangle(face, "3 0 1 2\n");
+  remark.insert(remark.find("element"), "Created by Blender3D 247 - www.blender.org, source file: \n");
+  WarningList warnings;
+  CHECK(read(remark, warnings).mesh.triangles.size() == 1);
+  const std::vector<SceneWarning> told = warnings.take();
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].text() == "t.ply:3: unknown word 'Created' in the header; its line is left out");
+}
+
 TEST_CASE("PLY: a mesh alone, of a scene file, with colours or a material") {
   const TemporaryFolder folder;
   std::ofstream(folder / "t.ply", std::ios::binary) << square("binary_big_endian");
@@ -190,7 +200,8 @@ TEST_CASE("PLY: what is broken is named with its line or byte") {
   CHECK(error_of("ply\nelement vertex -1\n") == "t.ply:2: '-1' is not a number of elements");
   CHECK(error_of("ply\nelement f 1\nproperty list float int a\n") ==
         "t.ply:3: the length of a list is a whole number");
-  CHECK(error_of("ply\nelments\n") == "t.ply:2: unknown word 'elments' in the header");
+  CHECK(error_of("ply\nelments\n") ==
+        "t.ply:2: unknown word 'elments' in the header; did you mean 'element'?");
   CHECK(error_of(triangle(face, "3 0 1 3\n")) ==
         "t.ply:13: vertex index 3 is out of range: valid are 0 .. 2");
   CHECK(error_of(triangle(face, "3 0 1 -1\n")) ==

@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/text.h"
 
 using namespace castray::cli;
 using Catch::Contains;
@@ -21,6 +24,21 @@ TEST_CASE("the bar never wraps, and says as much as there is room for") {
   CHECK_THAT(bar_text({1, 5, 0, 1}, 80), Contains("[########################] 100.0 %"));
   CHECK_THAT(bar_text({0, 5, std::nullopt, 1}, 80),
              Contains("[........................]   0.0 %") && Contains("? left"));
+}
+
+TEST_CASE("numbers in sentences have two digits and no exponent") {
+  const std::pair<double, const char*> cases[] = {{0.0234, "0.023"},
+                                                  {4.46, "4.5"},
+                                                  {99.4, "99"},
+                                                  {99.6, "100"},
+                                                  {232, "230"},
+                                                  {960, "960"},
+                                                  {996, "1000"},
+                                                  {12345, "12000"},
+                                                  {994e3, "990000"},
+                                                  {3.1e6, "more than a million"},
+                                                  {1e300, "more than a million"}};
+  for (const auto& [value, text] : cases) CHECK(castray::two_digits(value) == text);
 }
 
 TEST_CASE("progress for programs is one JSON object a line") {
