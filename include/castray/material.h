@@ -81,7 +81,7 @@ struct Material {
   bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
   double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
   bool two_sided_emission = false;
-  bool multiple_scattering = false;  ///< conductor: add what facets reflect more than once
+  bool multiple_scattering = false;  ///< metals: add what facets reflect more than once
   bool vertex_colors = false;        ///< Scene::colors multiply kd where the triangle has them
   int back = -1;  ///< index into Scene::materials of what the surface is where the normal points away from;
                   ///< -1: the same on both sides

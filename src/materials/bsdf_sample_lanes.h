@@ -21,6 +21,7 @@ struct Bsdf {
   /// alone.
   Float own[2];
   bool stretched;                             ///< whether there are conductors whose lobes are not round
+  bool scatters_again;                        ///< whether there is a material with that trait
   Uint record;                                ///< offset of the material
   const KernelMaterial *materials, *indices;  ///< as in MaterialTables
 

@@ -13,12 +13,6 @@ Vec3d mean_fresnel(const Material& m) {
   return sum;
 }
 
-Vec3d scattered_again(const Vec3d& mean_fresnel, const LobeAlbedo& lobe) {
-  const double lost = lobe.mean().lost, divisor = std::max(lost, double{least_left_for_base});
-  const Vec3d again = mean_fresnel * mean_fresnel * (1 - lost) / (Vec3d(1) - mean_fresnel * lost);
-  return again / divisor;
-}
-
 const MaterialDescriptor& conductor_descriptor() {
   static const MaterialDescriptor descriptor{
       .type = MaterialType::conductor,
@@ -47,11 +41,7 @@ const MaterialDescriptor& conductor_descriptor() {
             .range = float_range,
             .text = "Degrees from the direction in which u grows, towards that of v, to the one in which the "
                     "lobe is wide [0]."},
-           {.name = "multiple_scattering",
-            .kind = MaterialKey::Kind::flag,
-            .field = &Material::multiple_scattering,
-            .text =
-                "Adds what facets reflect more than once, so that rough metals are not too dark [false]."}}),
+           multiple_scattering_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
                (has_narrow_lobe(m) ? trait_focuses : 0u) |

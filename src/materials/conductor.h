@@ -31,12 +31,6 @@ T fresnel_conductor(T cosine, T eta, T k) {
 /// follows from an index.
 Vec3d mean_fresnel(const Material& m);
 
-/// What facets reflect more than once (Kulla and Conty 2017, "Revisiting physically based shading"), for a
-/// mean Fresnel term F: c (1 - E(cos_i)) (1 - E(cos_o)) / pi, with E the directional albedo of facets that
-/// reflect all, F^2 E_mean / (1 - F (1 - E_mean)) over 1 - E_mean for c, returned here. Where that mean is
-/// less than least_left_for_base, it is only part of the light.
-Vec3d scattered_again(const Vec3d& mean_fresnel, const LobeAlbedo& lobe);
-
 /// A metal: f = F D G2 / (4 cos_i cos_o), or a mirror where smooth, and what facets reflect more than once
 /// where that is asked for. F is constant, or follows from a complex index.
 template <class T>

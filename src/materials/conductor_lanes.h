@@ -15,13 +15,6 @@ CASTRAY_INLINE Float fresnel_conductor(Float cosine, Float eta, Float k) {
   return (along - across) * p / ((along + across) * (p + q));
 }
 
-/// scattered_again of conductor.h.
-CASTRAY_INLINE Float scattered_again(Float mean_fresnel, Float mean_lost) {
-  const Float again =
-      square(mean_fresnel) * (Float(1.f) - mean_lost) / (Float(1.f) - mean_fresnel * mean_lost);
-  return again / max(mean_lost, Float(least_left_for_base));
-}
-
 /// A metal; see conductor.h. ks is its reflectance, kd is scattered_again.
 struct Conductor : ModelDefaults {
   static constexpr MaterialType type = MaterialType::conductor;
@@ -39,7 +32,7 @@ struct Conductor : ModelDefaults {
 
   /// 1 - E of facets that reflect all.
   CASTRAY_INLINE static Float lost(const Bsdf& b, Float cosine) {
-    return left_by_lobe(b.albedos, b.albedo, Vec{Float(1.f), Float(1.f), Float(1.f)}, cosine).x;
+    return lost_by_lobe(b.albedos, b.albedo, cosine);
   }
 
   CASTRAY_INLINE static Float lobe_probability(const Bsdf& b, Float lost_o) {

@@ -91,6 +91,13 @@ MaterialKey roughness_key() {
           .text = "The square root of alpha."};
 }
 
+MaterialKey multiple_scattering_key() {
+  return {.name = "multiple_scattering",
+          .kind = MaterialKey::Kind::flag,
+          .field = &Material::multiple_scattering,
+          .text = "Adds what facets reflect more than once, so that rough metals are not too dark [false]."};
+}
+
 bool has_smooth_lobe(const Material& m) { return Ggx<double>{m.alpha}.smooth() && !m.has_alpha_map(); }
 
 bool has_narrow_lobe(const Material& m) {

@@ -60,6 +60,9 @@ MaterialKey vertex_colors_key();
 MaterialKey alpha_key();
 MaterialKey roughness_key();
 
+/// Of metals whose facets reflect light more than once.
+MaterialKey multiple_scattering_key();
+
 /// All traits of a material.
 std::uint32_t traits_of(const Material& material);
 

@@ -23,6 +23,7 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
   b.materials = table;
   b.indices = tables.indices;
   b.stretched = false;
+  b.scatters_again = tables.scatters_again;
   if constexpr (features & feature_detail) {
     b.ks = p.vec(slot_ks);
     b.alpha = p.value[slot_alpha];

@@ -86,6 +86,9 @@ Vec3<T> schlick(const Vec3<T>& f0, T weight) {
   return f0 * (T(1) - weight) + Vec3<T>(weight);
 }
 
+/// The mean of that term over directions to a surface, 2 * integral of F(c) c dc.
+inline Vec3d mean_schlick(const Vec3d& f0) { return f0 + (Vec3d(1) - f0) / 21; }
+
 /// w mirrored in the unit vector h.
 template <class T>
 Vec3<T> reflect(const Vec3<T>& w, const Vec3<T>& h) {

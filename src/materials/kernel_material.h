@@ -19,6 +19,7 @@ enum MaterialTrait : uint32_t {
                         ///< what light it sends to other surfaces are caustics
   trait_emits_backwards = 256,  ///< on the back alone; never seen from the front
   trait_stretched = 512,        ///< its lobes are not round
+  trait_scatters_again = 1024,  ///< principled: its metal adds what facets reflect more than once
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as
@@ -144,7 +145,8 @@ struct MaterialTables {
   /// `materials` where one has a complex index, absorbs, or has another back; else null.
   const KernelMaterial *indices, *absorbing, *pairs;
   bool filtered;   ///< whether a map reads the pixels' footprints
-  bool stretched;  ///< whether some material has trait_stretched
+  bool stretched;  ///< whether some material has trait_stretched; likewise
+  bool scatters_again;
 };
 
 /// BSDFs of one material side by side, for directions of its shading frame with wo.z > 0: f |cos| and density

@@ -118,19 +118,22 @@ MaterialTables KernelMaterials::tables() const {
   const auto where_any = [this](const auto& has_it) {
     return std::ranges::any_of(materials, has_it) ? materials.data() : nullptr;
   };
-  return {
-      .materials = materials.data(),
-      .details = details.data(),
-      .albedos = albedos.data(),
-      .indices = where_any([](const KernelMaterial& m) { return m.eta[0] > 0; }),
-      .absorbing = where_any([](const KernelMaterial& m) {
-        return std::ranges::any_of(m.absorption, [](float a) { return a > 0; });
-      }),
-      .pairs = where_any([this](const KernelMaterial& m) {
-        return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
-      }),
-      .filtered = filtered_,
-      .stretched = where_any([](const KernelMaterial& m) { return m.traits & trait_stretched; }) != nullptr};
+  const auto has_any = [&](std::uint32_t trait) {
+    return where_any([trait](const KernelMaterial& m) { return (m.traits & trait) != 0; }) != nullptr;
+  };
+  return {.materials = materials.data(),
+          .details = details.data(),
+          .albedos = albedos.data(),
+          .indices = where_any([](const KernelMaterial& m) { return m.eta[0] > 0; }),
+          .absorbing = where_any([](const KernelMaterial& m) {
+            return std::ranges::any_of(m.absorption, [](float a) { return a > 0; });
+          }),
+          .pairs = where_any([this](const KernelMaterial& m) {
+            return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
+          }),
+          .filtered = filtered_,
+          .stretched = has_any(trait_stretched),
+          .scatters_again = has_any(trait_scatters_again)};
 }
 
 std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lobe) {

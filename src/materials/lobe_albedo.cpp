@@ -77,4 +77,10 @@ LobeAlbedoRows::LobeAlbedoRows() {
   }
 }
 
+Vec3d scattered_again(const Vec3d& mean_fresnel, const LobeAlbedo& lobe) {
+  const double lost = lobe.mean().lost, divisor = std::max(lost, double{least_left_for_base});
+  const Vec3d again = mean_fresnel * mean_fresnel * (1 - lost) / (Vec3d(1) - mean_fresnel * lost);
+  return again / divisor;
+}
+
 }  // namespace castray

@@ -81,6 +81,12 @@ inline Vec3d base_under(const Vec3d& kd, const Vec3d& f0, const LobeAlbedo& coat
   return kd / Vec3d(at_least(left.x), at_least(left.y), at_least(left.z));
 }
 
+/// What facets reflect more than once (Kulla and Conty 2017, "Revisiting physically based shading"), for a
+/// mean Fresnel term F: c (1 - E(cos_i)) (1 - E(cos_o)) / pi, with E the directional albedo of facets that
+/// reflect all, F^2 E_mean / (1 - F (1 - E_mean)) over 1 - E_mean for c, returned here. Where that mean is
+/// less than least_left_for_base, it is only part of the light.
+Vec3d scattered_again(const Vec3d& mean_fresnel, const LobeAlbedo& lobe);
+
 /// Tables by alpha, each computed once. References stay valid.
 class LobeAlbedos {
  public:

@@ -28,6 +28,18 @@ CASTRAY_INLINE Vec left_by_lobe(const KernelAlbedo* albedos, Uint albedo, Vec f0
   return fma(one_minus(f0), fma(t, a1 - a0, a0), Vec{lost, lost, lost});
 }
 
+/// The same of a lobe that reflects all: what facets lose to one another.
+CASTRAY_INLINE Float lost_by_lobe(const KernelAlbedo* albedos, Uint albedo, Float cosine) {
+  return left_by_lobe(albedos, albedo, Vec{Float(1.f), Float(1.f), Float(1.f)}, cosine).x;
+}
+
+/// scattered_again of lobe_albedo.h.
+CASTRAY_INLINE Float scattered_again(Float mean_fresnel, Float mean_lost) {
+  const Float again =
+      square(mean_fresnel) * (Float(1.f) - mean_lost) / (Float(1.f) - mean_fresnel * mean_lost);
+  return again / max(mean_lost, Float(least_left_for_base));
+}
+
 /// The albedo of a base of colour kd over what that lobe leaves for it on the mean; see lobe_albedo.h.
 CASTRAY_INLINE Vec base_under(const KernelAlbedo* albedos, Uint albedo, Vec kd, Vec f0) {
   const Float a = gather(albedos, &KernelAlbedo::mean_a, albedo),

@@ -37,6 +37,7 @@ const MaterialDescriptor& principled_descriptor() {
             .brief = true},
            roughness_key(),
            alpha_key(),
+           multiple_scattering_key(),
            {.name = "sheen",
             .kind = Kind::number,
             .field = &Material::sheen,
@@ -62,7 +63,8 @@ const MaterialDescriptor& principled_descriptor() {
         const bool bare_metal =
             m.metallic == 1 && !m.map(SurfaceParameter::metallic).used() && m.clearcoat == 0;
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
-               (bare_metal && has_narrow_lobe(m) ? trait_focuses : 0u);
+               (bare_metal && has_narrow_lobe(m) ? trait_focuses : 0u) |
+               (m.multiple_scattering ? trait_scatters_again : 0u);
       },
       .albedo =
           [](const SurfaceValues<double>& v) {

@@ -30,6 +30,7 @@ inline int clearcoat_row(double roughness) { return LobeAlbedoRows::row_of(clear
 ///     f = c f_c + C(cos_i) C(cos_o) (s (1 - wi.h)^5 + S(cos_i) S(cos_o) f_b),    s = sheen (1 - metallic)
 ///     f_b = F D G2 / (4 cos_i cos_o) + (1 - metallic) kd / pi (1 - E(cos_i)) (1 - E(cos_o)) / (1 - E_mean)
 ///
+/// and, where that is asked for, metallic times scattered_again of facets with F0 = kd.
 /// F is Schlick's term with F0 = ks (1 - metallic) + kd metallic; E the albedo of a lobe with F0 = ks, as in
 /// Microfacet. f_c is a GGX lobe with F0 = 0.04. C and S are what clear coat and sheen leave of light to or
 /// from a direction, 1 - their albedo: so f is reciprocal and never reflects more than it receives.
@@ -39,6 +40,7 @@ struct Principled {
 
   Vec3<T> base;  ///< kd (1 - metallic) / (1 - E_mean)
   Vec3<T> ks, f0;
+  Vec3<T> scattered;  ///< metallic times scattered_again, or 0
   T sheen, clearcoat;
   Ggx<T> ggx, coat;
   const LobeAlbedo *albedo, *coat_albedo;  ///< of ggx.alpha and coat.alpha; not owned
@@ -51,6 +53,8 @@ struct Principled {
         .base = Vec3<T>(base_under(kd, ks, *lobes.own) * (1 - metallic)),
         .ks = Vec3<T>(ks),
         .f0 = Vec3<T>(ks + (kd - ks) * metallic),
+        .scattered = m.multiple_scattering ? Vec3<T>(scattered_again(mean_schlick(kd), *lobes.own) * metallic)
+                                           : Vec3<T>(),
         .sheen = static_cast<T>(values.at(slot_sheen) * (1 - metallic)),
         .clearcoat = static_cast<T>(values.at(slot_clearcoat)),
         .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
@@ -65,6 +69,7 @@ struct Principled {
     const Vec3<T> h = normalize(wo + wi);
     const T s = schlick_weight(dot(wo, h));
     Vec3<T> f = base * albedo->left(wo.z, ks) * albedo->left(wi.z, ks) * (T(1) / pi<T>);
+    if (scatters_again()) f += scattered * (lost(wo) * lost(wi) / pi<T>);
     if (!ggx.smooth()) f = f + schlick(f0, s) * (ggx.distribution(h) * ggx.shadowing_over_cos(wo, wi));
     f = f * (left_by_sheen(wo) * left_by_sheen(wi)) + Vec3<T>(sheen * s);
     const T lobe = coat.distribution(h) * coat.shadowing_over_cos(wo, wi);
@@ -105,6 +110,10 @@ struct Principled {
   }
 
  private:
+  bool scatters_again() const { return max_component(scattered) > 0; }
+  /// 1 - E of facets that reflect all.
+  T lost(const Vec3<T>& w) const { return albedo->left(w.z, Vec3<T>(1)).x; }
+
   T left_by_sheen(const Vec3<T>& w) const {
     T albedo_of_sheen = 0;
     for (std::size_t i = std::size(sheen_albedo_terms); i-- > 0;)
@@ -125,7 +134,9 @@ struct Principled {
     const Vec3<T> left = albedo->left(wo.z, ks), left_of_lobe = albedo->left(wo.z, f0);
     const T through_sheen = left_by_sheen(wo), through_coat = left_by_coat(wo);
     const T lobe = luminance(Vec3<T>(1) - left_of_lobe) * through_sheen;
-    const T below = luminance(base * left) * through_sheen + (T(1) - through_sheen);
+    T diffuse = luminance(base * left);
+    if (scatters_again()) diffuse += luminance(scattered) * lost(wo) * T(albedo->mean().lost);
+    const T below = diffuse * through_sheen + (T(1) - through_sheen);
     const T of_lobe = std::max(lobe / (lobe + below), lobe / 4);
     const T coat_reflects = T(1) - through_coat;
     const T of_coat =

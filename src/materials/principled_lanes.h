@@ -57,6 +57,7 @@ struct Principled : ModelDefaults {
   struct Layers {
     const Bsdf& b;
     Vec wo, f0, base, left_o;
+    Vec scattered;  ///< see principled.h; only set where some material has it
     Float sheen, coat, coat_alpha, coat_share, lobe_share;
     Uint coat_albedo;
 
@@ -73,13 +74,28 @@ struct Principled : ModelDefaults {
       coat_albedo = gather(b.materials, &KernelMaterial::clearcoat_albedo, b.record) +
                     to_uint(fma(roughness, rows, Float(0.5f))) * uint32_t{albedo_floats};
       left_o = left_by_lobe(b.albedos, b.albedo, b.ks, wo.z);
+      if (b.scatters_again) find_scattered(metallic);
       find_shares();
     }
+
+    CASTRAY_INLINE void find_scattered(Float metallic) {
+      const Float lost = mean_lost(), part(1.f / 21);
+      const Vec mean = fma(one_minus(b.kd), part, b.kd);  // of Schlick's term
+      const Vec again{scattered_again(mean.x, lost), scattered_again(mean.y, lost),
+                      scattered_again(mean.z, lost)};
+      const Uint traits = gather(b.materials, &KernelMaterial::traits, b.record);
+      const Mask none = (traits & uint32_t{trait_scatters_again}) == Uint(0u);
+      scattered = select(none, black(), again * metallic);
+    }
+    CASTRAY_INLINE Float mean_lost() const { return gather(b.albedos, &KernelAlbedo::mean_lost, b.albedo); }
+    CASTRAY_INLINE Float lost(Vec w) const { return lost_by_lobe(b.albedos, b.albedo, w.z); }
 
     CASTRAY_INLINE void find_shares() {
       const Float through_sheen = left_by_sheen(wo), through_coat = left_by_coat(wo), quarter(0.25f);
       const Float lobe = luminance(one_minus(left_by_lobe(b.albedos, b.albedo, f0, wo.z))) * through_sheen;
-      const Float below = fma(luminance(base * left_o), through_sheen, Float(1.f) - through_sheen);
+      Float diffuse = luminance(base * left_o);
+      if (b.scatters_again) diffuse = diffuse + luminance(scattered) * lost(wo) * mean_lost();
+      const Float below = fma(diffuse, through_sheen, Float(1.f) - through_sheen);
       const Float reflected = Float(1.f) - through_coat;
       coat_share = max(reflected / fma(through_coat, lobe + below, reflected), reflected * quarter);
       lobe_share = max(lobe / (lobe + below), lobe * quarter) * (Float(1.f) - coat_share);
@@ -89,7 +105,8 @@ struct Principled : ModelDefaults {
       const Vec h = normalize(wo + wi);
       const Float wo_h = dot(wo, h);
       const Lobe inner = lobe(b.alpha, h, wi), outer = lobe(coat_alpha, h, wi);
-      const Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
+      Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
+      if (b.scatters_again) diffuse = diffuse + scattered * (lost(wo) * lost(wi) * Float(1.f / pi));
       const Mask smooth = b.smooth();
       const Vec under = diffuse + select(smooth, black(), schlick(f0, wo_h) * inner.value);
       const Float cloth = sheen * schlick(black(), wo_h).x;

@@ -54,6 +54,8 @@ std::vector<Material> all_materials() {
   for (const double alpha : {0.0, 0.05, 0.3, 1.0}) {
     list.push_back(material(MaterialType::conductor, alpha));
     list.back().anisotropy = 0.8;
+    list.push_back(material(MaterialType::principled, alpha));
+    list.back().multiple_scattering = true;
   }
   return list;
 }
