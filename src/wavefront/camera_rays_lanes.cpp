@@ -48,9 +48,8 @@ void place_pixels(const Context& c, TileResult& result) {
   if (c.scene.edges.kinds) find_edges(c, ragged, result);
 }
 
-/// The key of pixel (x,y) in one epoch.
-CASTRAY_INLINE Uint key_of_pixel(uint32_t seed, Uint x, Uint y, uint64_t sample) {
-  return with_epoch(hash_combine(hash_combine(Uint(seed), x), y), sample);
+CASTRAY_INLINE Uint key_of_pixel(uint32_t seed, Uint x, Uint y) {
+  return hash_combine(hash_combine(Uint(seed), x), y);
 }
 
 CASTRAY_INLINE uint32_t index_of(uint64_t sample) { return (uint32_t)sample & ((1u << index_bits) - 1); }
@@ -62,7 +61,7 @@ CASTRAY_INLINE void move_at_edges(const Context& c, const TileResult& pixels, in
   const uint32_t edges = (uint32_t)(pixels.edges[i / tile_pixels] >> (i % tile_pixels)) & ((1u << width) - 1);
   if (edges == 0) return;
   const uint64_t sample = c.job.edge_sample + place_of(c.job, i / tile_pixels).repeat;
-  const Uint key = key_of_pixel(c.job.edge_seed, x, y, sample);
+  const Uint key = with_epoch(key_of_pixel(c.job.edge_seed, x, y), sample);
   const Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index_of(sample))}, PathBlocks::camera);
   for (int d = 0; d < 2; ++d) place[d] = select(mask_of_bits(edges), n.u[d], place[d]);
 }
@@ -80,13 +79,13 @@ CASTRAY_INLINE PixelView view_of(const KernelCamera& camera, Float x, Float y, F
 
 void camera_rays(const Context& c, const TileResult& pixels, Paths& paths, PixelViews* views) {
   const KernelCamera& camera = c.scene.camera;
-  const uint32_t index = index_of(c.job.sample);
   paths.count = c.job.tiles * tile_pixels;
   for (int i = 0; i < paths.count; i += width) {
     const Uint entry = Uint((uint32_t)i) + lane_index();
     const Uint x = load(pixels.x + i), y = load(pixels.y + i);
-    const Uint key = with_repeat(key_of_pixel(c.options.seed, x, y, c.job.sample),
-                                 place_of(c.job, i / tile_pixels).repeat);
+    const TilePlace tile = place_of(c.job, i / tile_pixels);
+    const Uint key = key_in(c, tile, key_of_pixel(c.options.seed, x, y));
+    const uint32_t index = index_of(sample_of(c, tile));
     Numbers<4> n = draw<4>(c.options.sobol, {key, Uint(index)}, PathBlocks::camera);
     if (c.scene.edges.kinds) move_at_edges(c, pixels, i, x, y, n.u);
     const Float px = to_float(x) + (c.options.jitter ? n.u[0] : Float(0.5f));

@@ -40,10 +40,10 @@ CASTRAY_STAGE void gather_environment(Context& c, const Vertices& x, const TileB
       gather_direction<Geometry, features>(c, {w, (int)suffixes.origin[suffix] - gatherers.first},
                                            light_from(environment, w), stratum, gatherers, s, gathered);
     }
-    const uint32_t key = tile_key(c, tile);
+    const TileSequence sequence = tile_sequence(c, tile);
     for (uint32_t first = 0; first < points; first += width) {
-      const Uint index = tile_index(key, c.job.sample, Uint(first) + lane_index(), points);
-      const Numbers<2> n = draw<2>(c.options.sobol, {Uint(key), index}, PathBlocks::environment(0));
+      const Uint index = tile_index(sequence, Uint(first) + lane_index(), points);
+      const Numbers<2> n = draw<2>(c.options.sobol, {Uint(sequence.key), index}, PathBlocks::environment(0));
       const EnvironmentSample sample = sample_environment(environment, n.u[0], n.u[1]);
       for (int l = 0; l < width && first + (uint32_t)l < points; ++l)
         gather_direction<Geometry, features>(

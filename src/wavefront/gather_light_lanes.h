@@ -27,11 +27,11 @@ CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* 
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     if ((features & feature_materials) && boxes[tile].empty) continue;
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
-    const uint32_t key = tile_key(c, tile);
+    const TileSequence sequence = tile_sequence(c, tile);
     const float stratum = stratum_of(c, suffixes.origins[tile]);
     const Receiver receiver = receiver_of(c, gatherers, lights[tile]);
     for (int first = 0; first < points; first += width) {
-      const LightPoint point = tile_light_points(c, receiver, lights[tile], key, first);
+      const LightPoint point = tile_light_points(c, receiver, lights[tile], sequence, first);
       for (int l = 0; l < width && first + l < points; ++l) {
         Transfer t;
         transfer<Geometry, features>(

@@ -61,7 +61,7 @@ inline constexpr int batch_size = tile_pixels * max_tiles;
 /// Top left pixel of a tile, in the full image, and its place in the grid of tiles.
 struct TilePlace {
   int x, y, grid_x, grid_y;
-  uint32_t repeat = 0;  ///< of the tile's sample: each has random numbers of its own
+  uint32_t repeat = 0, repeats = 1;  ///< which of how many takes of the tile's sample: see sample_of
 };
 
 /// The unit of work: one sample of `tiles` tiles of 8x8 pixels, side by side.

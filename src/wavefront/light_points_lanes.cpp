@@ -100,11 +100,11 @@ Receiver receiver_of(const Context& c, const Gatherers& tile, TileLights& lights
   return receiver;
 }
 
-LightPoint tile_light_points(const Context& c, const Receiver& tile, const TileLights& lights, uint32_t key,
-                             int first) {
+LightPoint tile_light_points(const Context& c, const Receiver& tile, const TileLights& lights,
+                             const TileSequence& sequence, int first) {
   const auto points = (uint32_t)c.options.light_points;
-  const Uint index = tile_index(key, c.job.sample, Uint((uint32_t)first) + lane_index(), points);
-  const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, 0);
+  const Uint index = tile_index(sequence, Uint((uint32_t)first) + lane_index(), points);
+  const Numbers<4> n = draw<4>(c.options.sobol, {Uint(sequence.key), index}, 0);
   const Mask second_half = Float(0.5f) <= n.u[3];
   const Float deep = fma(n.u[3], Float(2.f), select(second_half, Float(-1.f), Float(0.f)));
   LightPoint point = sample_light(c.scene.lights, tile, n.u[0], deep, n.u[1], n.u[2]);

@@ -3,6 +3,7 @@
 #include "lights/lights_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/gatherers_lanes.h"
+#include "wavefront/sequence_keys_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -30,6 +31,6 @@ Receiver receiver_of(const Context& c, const Gatherers& tile, TileLights& lights
 /// Light points of a tile from number `first` on, as many as there are lanes or points left: emitting
 /// side chosen, and offset to that side by their error. Their density is that of the tile's points.
 LightPoint tile_light_points(const Context& c, const Receiver& tile, const TileLights& lights,
-                             uint32_t tile_key, int first);
+                             const TileSequence& sequence, int first);
 
 }  // namespace castray::CASTRAY_ISA

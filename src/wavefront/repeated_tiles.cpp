@@ -29,9 +29,9 @@ RepeatedTiles::RepeatedTiles(const TileJob& job, const PixelEdges& edges, int re
   for (int tile = 0; tile < job.tiles; ++tile) {
     const int x = job.x + tile * tile_size, y = job.y;
     const bool sees_edge = edges.any(x - reach, y - reach, x + tile_size + reach, y + tile_size + reach);
-    for (int repeat = 0; repeat < (sees_edge ? repeats : 1); ++repeat)
-      places_[static_cast<std::size_t>(count_++)] = {x, y, job.grid_x + tile, job.grid_y,
-                                                     static_cast<std::uint32_t>(repeat)};
+    const std::uint32_t takes = sees_edge ? static_cast<std::uint32_t>(repeats) : 1;
+    for (std::uint32_t repeat = 0; repeat < takes; ++repeat)
+      places_[static_cast<std::size_t>(count_++)] = {x, y, job.grid_x + tile, job.grid_y, repeat, takes};
   }
 }
 

@@ -8,10 +8,10 @@ namespace castray::CASTRAY_ISA {
 
 /// Sequence indices of the suffixes of a tile. Under an environment runs of 2^k suffixes have runs of
 /// indices, so that what points of one orientation send out is stratified.
-CASTRAY_INLINE Uint suffix_index(const Context& c, uint32_t key, Uint item, uint32_t per_tile) {
-  if (!c.scene.lights.environment.shines) return tile_index(key, c.job.sample, item, per_tile);
-  const uint32_t order = hash_once(key, (uint32_t)c.job.sample) & (per_tile - 1);
-  return (item ^ Uint(order)) + Uint(((uint32_t)c.job.sample * per_tile) & ((1u << index_bits) - 1));
+CASTRAY_INLINE Uint suffix_index(const Context& c, const TileSequence& tile, Uint item, uint32_t per_tile) {
+  if (!c.scene.lights.environment.shines) return tile_index(tile, item, per_tile);
+  const uint32_t order = hash_once(tile.key, (uint32_t)tile.sample) & (per_tile - 1);
+  return (item ^ Uint(order)) + Uint(((uint32_t)tile.sample * per_tile) & ((1u << index_bits) - 1));
 }
 
 /// Starts the suffixes: one BSDF sample at a random point of each stratum of a tile's origins.
@@ -21,7 +21,8 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   out.count = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const uint32_t key = tile_key(c, tile), choice_key = hash_once(key, (uint32_t)c.job.sample);
+    const TileSequence sequence = tile_sequence(c, tile);
+    const uint32_t key = sequence.key, choice_key = hash_once(key, (uint32_t)sequence.sample);
     const Origins& origins = suffixes.origins[tile];
     for (uint32_t j = 0; j < per_tile; j += width) {
       const Uint item = Uint(j) + lane_index(), suffix = Uint((uint32_t)(tile * tile_pixels)) + item;
@@ -29,7 +30,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
       const Uint rank = (item * origins.count + in_stratum) >> __builtin_ctz(per_tile);
       const Mask there = item < Uint(per_tile);
       const Uint entry = gather(origins.entry, select(there, rank, Uint(0u)));
-      const Uint index = suffix_index(c, key, item, per_tile);
+      const Uint index = suffix_index(c, sequence, item, per_tile);
       const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, PathBlocks::direction(0));
       const Vec normal = gather_entries(x.normal, entry);
       const Parameters<features> parameters = gather_entries<features>(x.parameters, entry);
