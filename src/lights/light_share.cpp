@@ -1,6 +1,7 @@
 #include "lights/light_share.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "geometry/bounds.h"
@@ -73,7 +74,7 @@ bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
       power += luminance(emission[side]) * directions * length(twice_area(scene, light)) / 2;
     }
   return std::ranges::any_of(scene.lights, [&](std::uint32_t light) {
-    double density = power;
+    double density = std::numeric_limits<double>::infinity();
     for (const std::uint16_t side : scene.emitting_sides(scene.triangle_material[light]))
       density = std::min(density, luminance(emission[side]) / power);
     return shines_within(scene, light, bsdf_samples / (std::numbers::pi * density));

@@ -12,10 +12,10 @@ using namespace castray::test;
 
 namespace {
 
-/// A lamp of side 1 that shines down from y = 0, and a plate of side 0.2 that much below its middle.
+/// A dim lamp of side 1 that shines down from y = 0, and a plate of side 0.2 that much below its middle.
 Scene lamp_over_plate(double below, const Material& plate, bool two_sided = false) {
   SceneSketch sketch;
-  Material lamp{.name = "lamp", .ke = Vec3d(1, 2, 3)};
+  Material lamp{.name = "lamp", .ke = Vec3d(.01, .02, .03)};
   lamp.two_sided_emission = two_sided;
   const auto shining = sketch.add_material(lamp), lit = sketch.add_material(plate);
   const auto y = static_cast<float>(-below);
