@@ -62,8 +62,8 @@ struct RenderOptions {
   bool generic = false;
   Reuse reuse;
   /// Whether the film keeps differences, from which its image is reconstructed (`image_of`). `automatic`:
-  /// where paths are shared and a pilot finds that it pays; not with target error or replicates. `on`: shares
-  /// paths.
+  /// where paths are shared and a pilot finds that it pays; with a target error, where means would need many
+  /// samples; not with replicates. `on`: shares paths.
   Switch reconstruct = Switch::automatic;
   /// How many samples the tiles that see an edge of a surface get for each sample of the others, where the
   /// film keeps differences: from 1 to most_edge_samples. Their mean is one sample of the film. Else as many

@@ -16,9 +16,10 @@ namespace castray::cli {
 
 namespace {
 
-/// How many films of the image are there at once, at most.
-std::uint64_t films_at_once(const RenderRequest& request) {
-  if (request.options.target_error) return 5;  // two of the pilot, their first samples, and one in work
+/// How many films like this are there at once, at most.
+std::uint64_t films_at_once(const RenderRequest& request, const Film& like) {
+  // two of a pilot and one in work; the first films of means stand beside their first samples
+  if (request.options.target_error) return like.differences().kept() ? 3 : 5;
   const bool goes_on = request.resume || request.options.time_limit;
   return goes_on || request.replicates ? 2 : 1;
 }
@@ -74,7 +75,7 @@ MemoryNeed memory_need(const Scene& scene, const RenderRequest& request) {
   need.threads = options.threads > 0 ? options.threads : available_threads();
   need.work = bytes_of_thread * static_cast<std::uint64_t>(need.threads);
   need.like = film_like(request, plan);
-  need.films = films_at_once(request);
+  need.films = films_at_once(request, need.like);
   need.more_pixel = bytes_of_replicates(request, need.like) + bytes_of_pixel(request.passes);
   need.width = window.width();
   need.height = window.height();

@@ -44,8 +44,9 @@ class PreparedIntegrator {
   /// What was decided for the scene and the job and changes samples, as items of the film key, each after ";
   /// ".
   virtual std::string decisions(const Job&) const { return {}; }
-  /// Fills in instruction set, kernel, what is not needed, the tree, and the seconds of the pilot.
-  virtual void describe(RenderStats& stats) const = 0;
+  /// Fills in instruction set, kernel, what is not needed, the tree, and the seconds of the pilot, for a film
+  /// that was rendered.
+  virtual void describe(const Film& film, RenderStats& stats) const = 0;
 };
 
 }  // namespace castray

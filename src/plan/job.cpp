@@ -62,7 +62,7 @@ void check_target(const RenderOptions& o, Fault fault) {
   require(fault == Fault::none, "--target-error: cannot go with --fault; give --spp");
 }
 
-/// Reconstruction is of shared paths, whose samples are planned beforehand.
+/// Reconstruction is of shared paths.
 void check_reconstruction(const RenderOptions& o) {
   require(!o.edge_samples || (*o.edge_samples >= 1 && *o.edge_samples <= most_edge_samples),
           fmt::format("--edge-samples {}: must be auto or between 1 and {}", o.edge_samples.value_or(0),
@@ -73,7 +73,6 @@ void check_reconstruction(const RenderOptions& o) {
   const std::string flag = o.reconstruct == Switch::on ? "--reconstruct on" : "--edge-samples";
   require(o.reuse.automatic || o.reuse.width > 0,
           flag + ": needs paths that pixels share; leave out --reuse off");
-  require(!o.target_error, flag + ": cannot go with --target-error; leave one out");
 }
 
 /// What castRay does not have is refused, never ignored.

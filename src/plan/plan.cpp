@@ -76,12 +76,6 @@ std::string kernel_name(const Plan& plan) {
   if (plan.gain_of_light_paths > 0)
     name += fmt::format("{} (by a pilot, paths from lights are {} as efficient)",
                         plan.light_paths ? "" : ", caustics by chance", times(plan.gain_of_light_paths));
-  if (plan.suffixes > 0 && plan.gain_of_reconstruction > 0)
-    name +=
-        fmt::format(", image from {} (by a pilot, differences are {} as efficient at 4 samples)",
-                    plan.reconstruct ? "differences of pixels" : "means", times(plan.gain_of_reconstruction));
-  if (plan.suffixes > 0 && plan.gain_of_reconstruction > 0 && plan.reconstruct && plan.edge_samples > 1)
-    name += fmt::format(", {} times the samples at edges", plan.edge_samples);
   return name + (plan.mis ? ", MIS" : "");
 }
 
@@ -132,7 +126,18 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
 
 bool keeps_differences(const RenderOptions& options, const Plan& plan) {
   return options.reconstruct != Switch::off && plan.reconstruct && plan.suffixes > 0 &&
-         !options.target_error && options.max_depth != 1;
+         options.max_depth != 1;
+}
+
+std::string image_source(const Plan& plan, bool differences) {
+  if (plan.suffixes == 0 || plan.gain_of_reconstruction == 0) return {};
+  if (!differences && plan.reconstruct) return ", image from means";  // for reasons that no pilot knows
+  std::string source =
+      fmt::format(", image from {} (by a pilot, differences are {} as efficient at 4 samples)",
+                  differences ? "differences of pixels" : "means", times(plan.gain_of_reconstruction));
+  if (differences && plan.edge_samples > 1)
+    source += fmt::format(", {} times the samples at edges", plan.edge_samples);
+  return source;
 }
 
 void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain) {

@@ -36,8 +36,13 @@ struct Plan {
 /// them back (choose_by_pilot, choose_reconstruction).
 Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& window);
 
-/// Whether the films of this render keep what images are reconstructed from.
+/// Whether the films of this render keep what images are reconstructed from. (Those of a render to a target
+/// error do so if it takes many samples.)
 bool keeps_differences(const RenderOptions& options, const Plan& plan);
+
+/// What the image of a film, which keeps differences or not, is made of, and why: for after Plan::kernel.
+/// Empty where no pilot was asked.
+std::string image_source(const Plan& plan, bool differences);
 
 /// Lets the choice of lights know what is seen from regions, by which light samples have a mean square that
 /// many times smaller, and says so in Plan::kernel.

@@ -66,7 +66,7 @@ class Reference final : public PreparedIntegrator {
     }};
   }
 
-  void describe(RenderStats& stats) const override {
+  void describe(const Film&, RenderStats& stats) const override {
     stats.isa = "none";
     stats.kernel = kernel_name<T>;
     describe(accel_, stats);

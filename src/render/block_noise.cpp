@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace castray {
 
@@ -10,20 +11,36 @@ namespace {
 /// A block's noise is taken to be at least this part of the image's: a short pilot may have missed rare
 /// paths. So each block gets at least an eighth of the samples that the image's mean noise asks for.
 constexpr double least_noise = 1.0 / 64;
-/// Of an image of two halves that tells its own error.
-constexpr std::uint64_t fewest_samples = 4;
 /// What the fall of the noise is found from: films of at least so many times the samples, unless one is part
 /// of the other. So much of it may be chance.
 constexpr double least_growth = 3, chance_of_fall = 0.1;
 
-/// f(a, b) of every pixel's means in channel c.
+/// The radiance of each pixel of a film's image.
+class Radiance {
+ public:
+  explicit Radiance(const Film& film, int threads = 0) : film_(film) {
+    if (film.differences().kept()) reconstructed_ = image_of(film, threads);
+  }
+  const Window& window() const { return film_.window(); }
+  /// Pixel (x,y) of the full image.
+  double at(int x, int y, int c) const {
+    return reconstructed_ ? double{reconstructed_->at(x - window().x0, y - window().y0)[c]}
+                          : film_.mean(x, y)[c];
+  }
+
+ private:
+  const Film& film_;
+  std::optional<Image> reconstructed_;
+};
+
+/// f(a, b) of every pixel's radiance in channel c.
 template <class F>
-Plane plane_of(const Film& a, const Film& b, int c, F f) {
+Plane plane_of(const Radiance& a, const Radiance& b, int c, F f) {
   const Window& w = a.window();
   Plane plane(w.width(), w.height());
   for (int y = w.y0; y < w.y1; ++y)
     for (int x = w.x0; x < w.x1; ++x)
-      plane.at(x - w.x0, y - w.y0) = static_cast<float>(f(a.mean(x, y)[c], b.mean(x, y)[c]));
+      plane.at(x - w.x0, y - w.y0) = static_cast<float>(f(a.at(x, y, c), b.at(x, y, c)));
   return plane;
 }
 
@@ -36,7 +53,7 @@ Plane means_around(const Plane& plane, int radius) {
 /// The squared radiance that a channel's error is held to, from products a b, whose noise is 0 on average.
 /// Where noise exceeds the signal, a pixel's own product may be near 0: it is drawn to the mean around it
 /// (Efron and Morris 1973). An outlier raises its own product, but the mean of 25 less: it is at most that.
-Plane squared_radiance(const Film& a, const Film& b, int c) {
+Plane squared_radiance(const Radiance& a, const Radiance& b, int c) {
   const Plane own = plane_of(a, b, c, [](double p, double q) { return std::max(p * q, 0.); });
   const Plane noise =
       means_around(plane_of(a, b, c, [](double p, double q) { return (p - q) * (p - q) / 2; }), 1);
@@ -58,14 +75,16 @@ double area(const Window& w) { return static_cast<double>(w.width()) * w.height(
 
 }  // namespace
 
-PixelNoise::PixelNoise(const Film& a, const Film& b) : window_(a.window()), plane_(a.width(), a.height()) {
+PixelNoise::PixelNoise(const Film& a, const Film& b, int threads)
+    : window_(a.window()), plane_(a.width(), a.height()) {
+  const Radiance of_a(a, threads), of_b(b, threads);
   for (int c = 0; c < 3; ++c) {
-    const Plane squares = squared_radiance(a, b, c);
+    const Plane squares = squared_radiance(of_a, of_b, c);
     for (int y = window_.y0; y < window_.y1; ++y)
       for (int x = window_.x0; x < window_.x1; ++x) {
         const double n = a.count(x, y), m = b.count(x, y);
         if (n == 0 || m == 0) continue;
-        const double difference = a.mean(x, y)[c] - b.mean(x, y)[c];  // variance: (1/n + 1/m) of a sample's
+        const double difference = of_a.at(x, y, c) - of_b.at(x, y, c);  // variance: (1/n + 1/m) of a sample's
         const double square = squares.at(x - window_.x0, y - window_.y0);
         plane_.at(x - window_.x0, y - window_.y0) +=
             static_cast<float>(difference * difference / (square + 0.01) / 3 / (1 / n + 1 / m));
@@ -85,7 +104,7 @@ double fall_from_first(const Film& a, const Film& b, const Film& first_a, const 
   const Window& w = a.window();
   double of_one = 0, of_two = 0;
   for (int c = 0; c < 3; ++c) {
-    const Plane squares = squared_radiance(a, b, c);
+    const Plane squares = squared_radiance(Radiance(a), Radiance(b), c);
     for (int y = w.y0; y < w.y1; ++y)
       for (int x = w.x0; x < w.x1; ++x) {
         if (a.count(x, y) != 2 || b.count(x, y) != 2) continue;
@@ -140,12 +159,12 @@ double BlockNoise::expected_error(const SampleMap& map) const {
   });
 }
 
-SampleMap BlockNoise::planned(double samples_per_noise, std::uint64_t most) const {
+SampleMap BlockNoise::planned(double samples_per_noise, std::uint64_t least, std::uint64_t most) const {
   std::vector<std::uint64_t> counts;
   for (const double noise : noise_) {
     const double count = std::ceil(samples_per_noise * std::sqrt(noise));
     counts.push_back(count < static_cast<double>(most)
-                         ? std::max(std::min(fewest_samples, most), static_cast<std::uint64_t>(count))
+                         ? std::max(std::min(least, most), static_cast<std::uint64_t>(count))
                          : most);
   }
   SampleMap map = blocks_;
@@ -154,16 +173,16 @@ SampleMap BlockNoise::planned(double samples_per_noise, std::uint64_t most) cons
   return map;
 }
 
-SampleMap BlockNoise::plan(double target, std::uint64_t most) const {
-  const double least = *std::min_element(noise_.begin(), noise_.end());
-  if (!(least > 0)) return planned(0, most);  // then nothing is noisy
-  double low = 0, high = static_cast<double>(most) / std::sqrt(least);
-  if (expected_error(planned(high, most)) > target) return planned(high, most);
+SampleMap BlockNoise::plan(double target, std::uint64_t least, std::uint64_t most) const {
+  const double calmest = *std::min_element(noise_.begin(), noise_.end());
+  if (!(calmest > 0)) return planned(0, least, most);  // then nothing is noisy
+  double low = 0, high = static_cast<double>(most) / std::sqrt(calmest);
+  if (expected_error(planned(high, least, most)) > target) return planned(high, least, most);
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
-    (expected_error(planned(middle, most)) > target ? low : high) = middle;
+    (expected_error(planned(middle, least, most)) > target ? low : high) = middle;
   }
-  return planned(high, most);
+  return planned(high, least, most);
 }
 
 }  // namespace castray

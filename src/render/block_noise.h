@@ -11,10 +11,11 @@ namespace castray {
 /// The variance of one sample of each pixel, as relMSE.
 class PixelNoise {
  public:
-  /// From two independent films a and b of the image: per pixel and channel, (a-b)^2 estimates the variance.
-  /// The films must be independent of each other; samples within one may be correlated, as points of a
-  /// sequence and pixels that share paths are. A pixel that one of them lacks has no noise.
-  PixelNoise(const Film& a, const Film& b);
+  /// From two independent films a and b of the image: per pixel and channel, (a-b)^2 of their images, which
+  /// are reconstructed if films keep differences, estimates the variance. The films must be independent of
+  /// each other; samples within one may be correlated, as points of a sequence and pixels that share paths
+  /// are. A pixel that one of them lacks has no noise. `threads`: as for `image_of`.
+  PixelNoise(const Film& a, const Film& b, int threads = 0);
 
   /// Of pixel (x,y) of the full image.
   double at(int x, int y) const { return plane_.at(x - window_.x0, y - window_.y0); }
@@ -45,16 +46,16 @@ class BlockNoise {
   /// The expected relMSE of an image with the samples of the map, in two halves with sequences of their own.
   double expected_error(const SampleMap& map) const;
 
-  /// The fewest samples per pixel, at least 4, at most `most`, with an expected relMSE of `target`: in
-  /// proportion to the square root of a block's noise (Neyman 1934). `most` everywhere if that is not enough.
-  SampleMap plan(double target, std::uint64_t most) const;
+  /// The fewest samples per pixel, from `least` to `most`, with an expected relMSE of `target`: in proportion
+  /// to the square root of a block's noise (Neyman 1934). `most` everywhere if that is not enough.
+  SampleMap plan(double target, std::uint64_t least, std::uint64_t most) const;
 
  private:
   void raise_the_least();
   /// The mean over the image's pixels of value(i), i the pixel's block.
   template <class Value>
   double mean(Value value) const;
-  SampleMap planned(double samples_per_noise, std::uint64_t most) const;
+  SampleMap planned(double samples_per_noise, std::uint64_t least, std::uint64_t most) const;
 
   SampleMap blocks_;
   std::vector<double> noise_;  ///< by block: relMSE of one sample a pixel, among as many as the film has

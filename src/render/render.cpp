@@ -44,9 +44,8 @@ RenderResult render_samples(const PreparedScene& scene, const RenderOptions& opt
     throw InputError(fmt::format("{}: the scene was prepared for another one; prepare it anew", option));
   if (options.target_error && start)
     throw InputError("--target-error: cannot go on from an earlier film; leave out the target or the film");
-  job.key += prepared.integrator->decisions(job);
-  RenderResult result = take_samples(job, progress, start, prepared.integrator->work(job));
-  prepared.integrator->describe(result.stats);
+  RenderResult result = take_samples(job, progress, start, *prepared.integrator);
+  prepared.integrator->describe(result.film, result.stats);
   return result;
 }
 

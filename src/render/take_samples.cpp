@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "render/block_noise.h"
+#include "render/row_loop.h"
 
 namespace castray {
 
 namespace {
 
-/// Samples per pixel of each of the two films of a pilot.
-constexpr std::uint64_t fewest_of_pilot = 2;
+/// Samples per pixel, at least, of each of the two films of a pilot, and of an image, which tell its error.
+/// Fewer than four are not reconstructed.
+constexpr std::uint64_t fewest_of_means = 2, fewest_to_reconstruct = 4;
+/// Where means need fewer samples than this, the longer pilots of reconstruction take what it gains.
+constexpr std::uint64_t enough_to_reconstruct = 40;
 /// A pilot aims at one sample for every 8 of the image, and is long enough with one for every 16.
 constexpr std::uint64_t share_aimed_at = 8, share_needed = 16;
 /// The next pilot has at most this many times the samples of a block: a short pilot's estimate is unreliable.
@@ -23,27 +28,54 @@ constexpr double near_enough = 1.4;
 constexpr std::uint64_t last_replicate = (std::uint64_t{1} << 32) / replicate_length - 1;
 constexpr std::uint64_t most_of_image = (last_replicate - 2 * last_round - 1) * replicate_length;
 
+/// How samples are taken.
+struct Technique {
+  Technique(Job of, const PreparedIntegrator& integrator) : job(std::move(of)), work(integrator.work(job)) {
+    job.key += integrator.decisions(job);
+  }
+  Technique(const Technique&) = delete;
+  Technique& operator=(const Technique&) = delete;
+
+  Job job;
+  BandWork work;  ///< of the job here
+};
+
+Job with_means(Job job) {
+  job.options.reconstruct = Switch::off;
+  return job;
+}
+
 class TargetRun {
  public:
-  TargetRun(const Job& job, const ProgressCallback& progress, const BandWork& work)
-      : job_(job), target_(*job.options.target_error), progress_(progress), work_(work) {}
+  TargetRun(const Job& job, const ProgressCallback& progress, const PreparedIntegrator& integrator)
+      : job_(job),
+        target_(*job.options.target_error),
+        progress_(progress),
+        integrator_(integrator),
+        technique_(std::make_unique<Technique>(job.options.reconstruct == Switch::on ? job : with_means(job),
+                                               integrator)),
+        may_reconstruct_(job.options.reconstruct == Switch::automatic) {}
 
   RenderResult run() {
-    SampleMap pilot(job_.window, {0, fewest_of_pilot});
+    SampleMap pilot(job_.window, {0, fewest()});
     planned_ = 2 * share_aimed_at * pilot.total();
-    bool whole = render_first_pilot();
+    bool whole = reconstructs() ? render_pilot(pilot, 0) : render_two_samples();
     std::optional<BlockNoise> shorter;
     for (std::uint64_t round = 1;; ++round) {
       if (!whole) return pilots_as_image();
-      const PixelNoise pixels(pilots_[0], pilots_[1]);
+      const PixelNoise pixels(pilots_[0], pilots_[1], job_.threads);
       BlockNoise noise(pixels, pilot);
       noise.set_fall(shorter ? noise.fall_from(*shorter) : first_fall_);
-      const SampleMap plan = noise.plan(target_, std::min(job_.options.spp, most_of_image));
-      planned_ = stats_.paths + plan.total();
-      if (stats_.paths * share_needed >= plan.total() || round > last_round) return image(pixels, plan);
-      shorter = noise;
+      const SampleMap plan = noise.plan(target_, 2 * fewest(), std::min(job_.options.spp, most_of_image));
+      if (reconstruct_if_it_pays(plan)) {
+        shorter.reset();
+      } else {
+        planned_ = stats_.paths + plan.total();
+        if (stats_.paths * share_needed >= plan.total() || round > last_round) return image(pixels, plan);
+        shorter = noise;
+      }
       pilot = longer_pilot(pilot, plan);
-      planned_ += 2 * pilot.total();
+      planned_ = stats_.paths + plan.total() + 2 * pilot.total();
       whole = render_pilot(pilot, round);
     }
   }
@@ -51,7 +83,7 @@ class TargetRun {
  private:
   /// Renders the samples of one map in the time that is left, and adds up the statistics.
   RenderResult render(const SampleMap& map) {
-    Job job = job_;
+    Job job = technique_->job;
     if (job.options.time_limit) *job.options.time_limit -= stats_.render_seconds;
     const std::uint64_t before = stats_.paths, pilot_paths = stats_.pilot_paths;
     RenderResult result = run_rows(
@@ -61,7 +93,7 @@ class TargetRun {
           const double fraction = static_cast<double>(paths) / static_cast<double>(planned_);
           return !progress_ || progress_({std::min(fraction, 1.0), paths, p.film});
         },
-        nullptr, map, work_);
+        nullptr, map, technique_->work);
     add_stats(result.stats, stats_);
     result.stats.pilot_paths = pilot_paths;
     stats_ = result.stats;
@@ -79,9 +111,27 @@ class TargetRun {
     return true;
   }
 
-  /// Of two samples, taken one after the other, so that it tells at once how fast the noise falls. Shared
-  /// paths gain more by their second sample than by those after it.
-  bool render_first_pilot() {
+  bool reconstructs() const { return technique_->work.differences; }
+  std::uint64_t fewest() const { return reconstructs() ? fewest_to_reconstruct : fewest_of_means; }
+
+  /// Goes on with films that keep differences, if means need so many samples that it pays, or as many as
+  /// there may be, and the integrator keeps them.
+  bool reconstruct_if_it_pays(const SampleMap& plan) {
+    const std::uint64_t pixels = SampleMap(job_.window, {0, 1}).total(), most = job_.options.spp;
+    if (!may_reconstruct_ || most < 2 * fewest_to_reconstruct ||
+        plan.total() < std::min(enough_to_reconstruct, most) * pixels)
+      return false;
+    may_reconstruct_ = false;
+    auto technique = std::make_unique<Technique>(job_, integrator_);
+    if (!technique->work.differences) return false;
+    technique_ = std::move(technique);
+    pilots_[1] = Film();  // is not merged with films that keep differences
+    return true;
+  }
+
+  /// The first pilot of means: of two samples, taken one after the other, so that it tells at once how fast
+  /// the noise falls. Shared paths gain more by their second sample than by those after it.
+  bool render_two_samples() {
     SampleMap one(job_.window, {0, 1});
     if (!render_pilot(one, 0)) return false;
     const std::array<Film, 2> first{pilots_[0], pilots_[1]};
@@ -91,7 +141,7 @@ class TargetRun {
       stats_.pilot_paths = stats_.paths;
       if (stats_.stopped != Stopped::done) return false;
     }
-    if (!work_.shared) first_fall_ = fall_from_first(pilots_[0], pilots_[1], first[0], first[1]);
+    if (!technique_->work.shared) first_fall_ = fall_from_first(pilots_[0], pilots_[1], first[0], first[1]);
     return true;
   }
 
@@ -99,10 +149,10 @@ class TargetRun {
     return (last_replicate - 2 * round - side) * replicate_length;
   }
 
-  static SampleMap longer_pilot(const SampleMap& pilot, const SampleMap& plan) {
+  SampleMap longer_pilot(const SampleMap& pilot, const SampleMap& plan) const {
     std::vector<std::uint64_t> counts;
     for (std::size_t i = 0; i < plan.blocks(); ++i)
-      counts.push_back(std::min({std::max(plan.count(i) / (2 * share_aimed_at), fewest_of_pilot),
+      counts.push_back(std::min({std::max(plan.count(i) / (2 * share_aimed_at), fewest()),
                                  fastest_growth * pilot.count(i), replicate_length}));
     SampleMap longer = pilot;
     longer.set_counts(std::move(counts));
@@ -119,17 +169,19 @@ class TargetRun {
   /// The image is two films, independent of each other, so that it knows its own error. Only the pilot
   /// decides about samples: an image that is kept or not by the noise seen in it is biased.
   RenderResult image(const PixelNoise& of_pilot, const SampleMap& plan) {
+    const std::uint64_t nonfinite = pilots_[0].nonfinite_samples + pilots_[1].nonfinite_samples;
+    for (Film& film : pilots_) film = Film();  // its memory is needed
     const auto [first, second] = halves(plan);
     RenderResult result = render(first);
     std::optional<PixelNoise> measured;
     if (result.stats.stopped == Stopped::done && second.total() > 0) {
       RenderResult rest = render(second);
-      if (rest.stats.stopped == Stopped::done) measured.emplace(result.film, rest.film);
+      if (rest.stats.stopped == Stopped::done) measured.emplace(result.film, rest.film, job_.threads);
       result.film.merge(rest.film);
       result.stats = std::move(rest.stats);
     }
     result.stats.expected_error = (measured ? *measured : of_pilot).expected_error(result.film);
-    result.film.nonfinite_samples += pilots_[0].nonfinite_samples + pilots_[1].nonfinite_samples;
+    result.film.nonfinite_samples += nonfinite;
     const bool reached = *result.stats.expected_error <= near_enough * target_;
     if (result.stats.stopped == Stopped::done && reached) result.stats.stopped = Stopped::target_error;
     return result;
@@ -150,7 +202,9 @@ class TargetRun {
   const Job& job_;
   double target_;  ///< relMSE
   const ProgressCallback& progress_;
-  const BandWork& work_;
+  const PreparedIntegrator& integrator_;
+  std::unique_ptr<Technique> technique_;
+  bool may_reconstruct_;  ///< but does not yet
   Film pilots_[2];
   double first_fall_ = 0;      ///< of the first pilot's noise
   RenderStats stats_;          ///< of all so far
@@ -160,9 +214,10 @@ class TargetRun {
 }  // namespace
 
 RenderResult take_samples(const Job& job, const ProgressCallback& progress, const Film* start,
-                          const BandWork& work) {
-  if (job.options.target_error) return TargetRun(job, progress, work).run();
-  return run_rows(job, progress, start, SampleMap(job.window, job.samples), work);
+                          const PreparedIntegrator& integrator) {
+  if (job.options.target_error) return TargetRun(job, progress, integrator).run();
+  const Technique technique(job, integrator);
+  return run_rows(technique.job, progress, start, SampleMap(job.window, job.samples), technique.work);
 }
 
 }  // namespace castray

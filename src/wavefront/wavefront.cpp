@@ -386,10 +386,10 @@ class Wavefront final : public PreparedIntegrator {
     return items;
   }
 
-  void describe(RenderStats& stats) const override {
+  void describe(const Film& film, RenderStats& stats) const override {
     stats.pilot_seconds = pilot_seconds_;
     stats.isa = kernel_.name;
-    stats.kernel = plan_.kernel;
+    stats.kernel = plan_.kernel + image_source(plan_, film.differences().kept());
     stats.skipped = plan_.skipped;
     if (!data_.is_list()) stats.bvh_seconds = tree_stats().seconds;
     stats.accel_summary = accel_summary();

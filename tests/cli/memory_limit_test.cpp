@@ -61,6 +61,7 @@ TEST_CASE("a refusal names the least limit; with it the render takes no more, an
       {"a film", {"--size", "300x200", "--spp", "4", "--reconstruct", "on", "-o", "x.film", "-o", "x.hdr"}},
       {"two films", {"--size", "300x300", "--spp", "4", "--reconstruct", "off", "--time-limit", "50"}},
       {"pilots", {"--size", "256x256", "--spp", "16", "--target-error", "0.5"}},
+      {"reconstructed pilots", {"--size", "192x192", "--spp", "12", "--target-error", "1e-6"}},
       {"replicates", {"--size", "256x256", "--replicates", "16", "--spp", "16", "-o", "x.exr"}},
   }));
   CAPTURE(what);

@@ -119,6 +119,5 @@ TEST_CASE("reconstruction is refused where there is nothing to reconstruct from"
   };
   refused({"--reuse", "off"}, "leave out --reuse off");
   refused({"--integrator", "reference"}, "the reference integrator");
-  refused({"--target-error", "0.1"}, "--target-error");
   refused({"--replicates", "2", "--spp", "4"}, "--replicates");
 }

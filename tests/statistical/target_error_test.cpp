@@ -19,7 +19,7 @@ RenderOptions to_target(RenderOptions options, double target) {
 }
 
 Image image_of(const Scene& scene, const RenderOptions& options) {
-  return render(scene, options).film.image();
+  return castray::image_of(render(scene, options).film);
 }
 
 std::vector<std::vector<double>> renders_of(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
@@ -27,6 +27,14 @@ std::vector<std::vector<double>> renders_of(const Scene& scene, RenderOptions op
   for (std::uint64_t i = 0; i < seeds; ++i, ++options.seed)
     renders.push_back(block_means(image_of(scene, options), 8));
   return renders;
+}
+
+void check_mean(const char* name, const std::vector<std::vector<double>>& renders,
+                const ExpectedBlocks& expected) {
+  const BlockScores scores = block_scores(renders, expected.mean, expected.variance);
+  CAPTURE(name, scores.rms, scores.largest, scores.count);
+  CHECK(scores.largest < score_limit(scores.count, 1e-4));  // the rate of false alarms
+  CHECK(scores.rms < 1.25);                                 // 192 scores: 1 has a standard error of 0.05
 }
 
 }  // namespace
@@ -49,7 +57,7 @@ TEST_CASE("the error that a target asks for is about the error that is got, and 
       const RenderOptions options = to_target(wavefront_options(128, 1, seed), c.target);
       const RenderResult result = render(scene, c.shared ? options : plain(options));
       told.add(result.stats.expected_error.value());
-      got.add(reference.relmse(result.film.image()));
+      got.add(reference.relmse(castray::image_of(result.film)));
     }
     CAPTURE(c.scene, c.shared, c.target, got.mean(), told.mean());
     CHECK(got.mean() > c.target * 0.5);
@@ -63,12 +71,14 @@ TEST_CASE("a render to a target error has the mean of a plain one", "[statistica
   for (const char* name : {"cornell_conductor", "cornell_box"}) {
     const Scene scene = standard_scene(name);
     const ExpectedBlocks expected(renders_of(scene, wavefront_options(64, 64, 5000), 32));
-    const double target = 0.1;
-    const BlockScores scores =
-        block_scores(renders_of(scene, to_target(plain(wavefront_options(64, 1, 1)), target), 200),
-                     expected.mean, expected.variance);
-    CAPTURE(name, scores.rms, scores.largest, scores.count);
-    CHECK(scores.largest < score_limit(scores.count, 1e-4));  // the rate of false alarms
-    CHECK(scores.rms < 1.25);                                 // 192 scores: 1 has a standard error of 0.05
+    check_mean(name, renders_of(scene, to_target(plain(wavefront_options(64, 1, 1)), 0.1), 200), expected);
   }
+}
+
+TEST_CASE("a reconstructed render to a target error has the mean of plain renders", "[statistical]") {
+  const Scene scene = standard_scene("cornell_conductor");
+  const ExpectedBlocks expected(renders_of(scene, wavefront_options(64, 64, 5000), 32));
+  RenderOptions options = to_target(wavefront_options(64, 1, 1), 5e-4);
+  options.reconstruct = Switch::on;
+  check_mean("reconstructed", renders_of(scene, options, 32), expected);
 }

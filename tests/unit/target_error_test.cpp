@@ -1,9 +1,11 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "castray/error.h"
+#include "castray/metrics.h"
 #include "core/sequences.h"
 #include "render/block_noise.h"
 #include "render/prepared_scene.h"
@@ -48,6 +50,27 @@ struct TwoFilms {
   }
   BlockNoise noise() const { return {PixelNoise(films[0], films[1]), map()}; }
   SampleMap map() const { return {films[0].window(), {0, 4}}; }
+};
+
+/// Renders any radiance of pixel and sample index.
+class FakeIntegrator final : public PreparedIntegrator {
+ public:
+  explicit FakeIntegrator(std::function<float(int x, int y, std::uint64_t sample)> radiance)
+      : radiance_(std::move(radiance)) {}
+
+  BandWork work(const Job&) const override {
+    return {.render = [this](int y0, int y1, const SampleRange& range, const SampleMap& map, Film& film,
+                             RowStats&) {
+      for (int y = y0; y < y1; ++y)
+        for (int x = 0; x < film.width(); ++x)
+          for (std::uint64_t s = range.first; s < range.first + range.count; ++s)
+            if (map.wants(x, y, s)) film.add(x, y, Vec3f(radiance_(x, y, s)));
+    }};
+  }
+  void describe(const Film&, RenderStats&) const override {}
+
+ private:
+  std::function<float(int, int, std::uint64_t)> radiance_;
 };
 
 }  // namespace
@@ -143,16 +166,16 @@ TEST_CASE(
 
 TEST_CASE("samples are planned in proportion to the root of the noise, until the target is met") {
   const BlockNoise noise = TwoFilms(0.1f, 0.05f).noise();
-  const SampleMap plan = noise.plan(1e-5, 1u << 20);
+  const SampleMap plan = noise.plan(1e-5, 4, 1u << 20);
   CHECK(noise.expected_error(plan) <= 1e-5);
   CHECK(noise.expected_error(plan) > 0.99e-5);
   CHECK(double(plan.count(0)) / double(plan.count(1)) == Approx(2).epsilon(0.02));
-  const SampleMap capped = noise.plan(1e-5, 100);
+  const SampleMap capped = noise.plan(1e-5, 4, 100);
   CHECK(capped.count(0) == 100);
   CHECK(capped.count(1) == 100);
   const BlockNoise calm = TwoFilms(0, 0).noise();
-  CHECK(calm.plan(1e-9, 100).total() == 64 * 32 * 4);  // the fewest
-  CHECK(calm.plan(1e-9, 2).total() == 64 * 32 * 2);
+  CHECK(calm.plan(1e-9, 4, 100).total() == 64 * 32 * 4);  // the fewest
+  CHECK(calm.plan(1e-9, 4, 2).total() == 64 * 32 * 2);
   CHECK(calm.expected_error(capped) == 0);
 }
 
@@ -217,15 +240,9 @@ TEST_CASE("bright samples that only the image saw make the target missed") {
       const bool bright = rare && sample < 2 * replicate_length && h % 5000 == 0;
       return bright ? 200.f : 1 + .5f * static_cast<float>(static_cast<std::int32_t>(h)) / 2147483648.f;
     };
-    const BandWork work{
-        .render = [&](int y0, int y1, const SampleRange& range, const SampleMap& map, Film& film, RowStats&) {
-          for (int y = y0; y < y1; ++y)
-            for (int x = 0; x < film.width(); ++x)
-              for (std::uint64_t s = range.first; s < range.first + range.count; ++s)
-                if (map.wants(x, y, s)) film.add(x, y, Vec3f(radiance(x, y, s)));
-        }};
+    const FakeIntegrator integrator(radiance);
     const Job job = make_job(facts_of(standard_scene("cornell_box")), to_target(2e-3));
-    const RenderStats stats = take_samples(job, {}, nullptr, work).stats;
+    const RenderStats stats = take_samples(job, {}, nullptr, integrator).stats;
     CAPTURE(rare, stats.expected_error.value());
     CHECK((stats.stopped == Stopped::done) == rare);
     CHECK((*stats.expected_error > 2.8e-3) == rare);
@@ -234,13 +251,57 @@ TEST_CASE("bright samples that only the image saw make the target missed") {
 
 TEST_CASE("a render to a target error that is stopped early leaves a whole image") {
   const Scene scene = standard_scene("cornell_box");
-  for (const double fraction : {0.0, 0.05, 0.5}) {
+  for (const double fraction : {0.0, 0.01, 0.05, 0.5}) {
     const RenderResult result =
         render(scene, to_target(1e-5), [&](const Progress& p) { return p.fraction < fraction; });
     CHECK(result.stats.stopped == Stopped::interrupted);
     for (int y = 0; y < 70; ++y)
       for (int x = 0; x < 100; ++x) REQUIRE(result.film.count(x, y) > 0);
   }
+}
+
+TEST_CASE("where means need many samples, images are reconstructed to the error asked for, from fewer") {
+  const Scene scene = standard_scene("cornell_box");
+  RenderOptions options = to_target(2e-4);
+  options.width = options.height = 96;
+  RenderOptions reference_options = options;
+  reference_options.target_error.reset();
+  reference_options.seed = 100;
+  reference_options.spp = 512;
+  const PreparedScene prepared(scene, options);
+  const Image reference = image_of(render(prepared, reference_options).film);
+  double samples = 0;
+  for (options.seed = 1; options.seed <= 4; ++options.seed) {
+    const RenderResult result = render(prepared, options);
+    REQUIRE(result.film.differences().kept());
+    CHECK_THAT(result.film.key, Contains("differences=on"));
+    CHECK_THAT(result.stats.kernel, Contains("image from differences"));
+    const double error = measure_errors(image_of(result.film), reference, 1).relmse;
+    CAPTURE(options.seed, error, result.stats.expected_error.value());
+    CHECK(error > 0.6 * 2e-4);
+    CHECK(error < 1.5 * 2e-4);
+    CHECK(*result.stats.expected_error < 1.5 * error);
+    CHECK(*result.stats.expected_error > error / 1.5);
+    samples += result.film.samples_per_pixel() / 4;
+  }
+  options.reconstruct = Switch::off;
+  options.seed = 1;
+  CHECK(samples < 0.5 * render(prepared, options).film.samples_per_pixel());
+}
+
+TEST_CASE("where means need few samples, they are what a render to a target error makes, unless told") {
+  const Scene scene = standard_scene("cornell_box");
+  RenderOptions options = to_target(5e-3);
+  options.width = options.height = 96;
+  const RenderResult means = render(scene, options);
+  CHECK_FALSE(means.film.differences().kept());
+  CHECK_THAT(means.film.key, !Contains("differences=on"));
+  CHECK_THAT(means.stats.kernel, Contains("image from means"));
+  options.reconstruct = Switch::on;
+  const RenderResult reconstructed = render(scene, options);
+  CHECK(reconstructed.film.differences().kept());
+  CHECK(reconstructed.stats.stopped == Stopped::target_error);
+  CHECK(*reconstructed.stats.expected_error < *means.stats.expected_error);
 }
 
 TEST_CASE("what a target error contradicts is refused") {
