@@ -32,7 +32,8 @@ CASES = {
     "colours": (
         {"type": "diffuse", "kd": {"image": "colours.png", "scale": [2, 3], "offset": [0.3, 0.1], "factor": [0.9, 0.9, 0.9]}},
         "Kd .9 .9 .9\nmap_Kd -s 2 3 1 -o .3 .1 0 colours.png\n",
-        lambda: diffuse(bitmap("colours.png", scale=(2, 3), offset=(0.3, 0.1)), 0.9)),
+        lambda: twosided({"type": "diffuse",
+                          "reflectance": scaled(bitmap("colours.png", scale=(2, 3), offset=(0.3, 0.1)), 0.9)})),
     "holes": (
         {"type": "diffuse", "kd": [0.6, 0.3, 0.1], "coverage": {"image": "holes.png"}},
         "Kd .6 .3 .1\nillum 1\nmap_d holes.png\n",
@@ -161,12 +162,11 @@ def twosided(bsdf):
     return {"type": "twosided", "bsdf": bsdf}
 
 
-def diffuse(reflectance, factor):
+def scaled(texture, factor):
     """The factor is applied to the texels: Mitsuba has no product of a constant and an image."""
-    texels = np.asarray(mi.Bitmap(reflectance.pop("filename")).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32,
-                                                                       srgb_gamma=False))
-    reflectance.update(bitmap=mi.Bitmap((texels * factor).astype(np.float32)), raw=True)
-    return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": reflectance}}
+    texels = np.asarray(mi.Bitmap(texture.pop("filename")).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32,
+                                                                   srgb_gamma=False))
+    return {**texture, "bitmap": mi.Bitmap((texels * factor).astype(np.float32)), "raw": True}
 
 
 def mitsuba_scene(name, view):

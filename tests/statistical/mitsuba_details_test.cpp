@@ -1,5 +1,5 @@
-// Images by Mitsuba: materials in tests/golden/details, cameras in tests/golden/cameras, made by scripts of
-// these names in tests/oracles.
+// Images by Mitsuba: materials in tests/golden/details, lights and instances in tests/golden/lights, cameras
+// in tests/golden/cameras, made by scripts of these names in tests/oracles.
 #include <catch2/catch.hpp>
 
 #include "integrators.h"
@@ -38,13 +38,20 @@ void check(const std::string& file, const Expected& expected, Way way) {
 
 const std::string golden = std::string(CASTRAY_ROOT) + "/tests/golden/";
 const std::vector<std::string> details{"colours", "holes", "normals", "heights", "metal", "mirror"},
-    without_images{"index", "glass", "pair", "brushed"};
+    without_images{"index", "glass", "pair", "brushed"},
+    lights{"environment", "point", "spot", "directional", "emission", "instances"};
 
 /// By every way of rendering: 18 tests a scene.
 void check_against_mitsuba(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     for (const Way& way : every_way(wavefront_options(64, 8, 1)))
       check(golden + folder + name + ".json", Expected(golden + folder + name), way);
+}
+
+/// By one kernel, with plain and with shared paths.
+void check_both_paths(const std::string& file, const Expected& expected) {
+  check(file, expected, {"plain", plain(wavefront_options(64, 8, 2))});
+  check(file, expected, {"shared", wavefront_options(64, 8, 3)});
 }
 
 }  // namespace
@@ -58,16 +65,25 @@ TEST_CASE(
     "[statistical]") {
   for (const std::string& name : without_images) {
     const std::string file = golden + "details/" + name;
-    check(file + ".json", Expected(file), {"plain", plain(wavefront_options(64, 8, 2))});
-    check(file + ".json", Expected(file), {"shared", wavefront_options(64, 8, 3)});
+    check_both_paths(file + ".json", Expected(file));
+  }
+}
+
+TEST_CASE(
+    "an image of the sky, lights without size, a lamp with an image and instances are as Mitsuba shows them",
+    "[statistical]") {
+  for (const std::string& name : lights) {
+    const std::string file = golden + "lights/" + name;
+    const Expected expected(file);
+    check_both_paths(file + ".json", expected);
+    check(file + ".json", expected, {"reference", reference_options(64, 64, 8, 4)});
   }
 }
 
 TEST_CASE("MTL's images on materials are as Mitsuba shows them", "[statistical]") {
   for (const std::string& name : details) {
     const std::string file = golden + "details/" + name;
-    check(file + "_mtl.json", Expected(file), {"plain", plain(wavefront_options(64, 8, 2))});
-    check(file + "_mtl.json", Expected(file), {"shared", wavefront_options(64, 8, 3)});
+    check_both_paths(file + "_mtl.json", Expected(file));
   }
 }
 

@@ -20,6 +20,14 @@ TEST_CASE("the wavefront agrees with castRay on every material", "[statistical]"
   check_scene("narrow", box_with([](Material& m) { m.alpha = 0.05; }));
   check_scene("rough glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; }));
   check_scene("black", box_with([](Material& m) { m.type = MaterialType::diffuse, m.kd = Vec3d(0); }));
+  check_scene("metal by its index, with multiple scattering", box_with([](Material& m) {
+                m.type = MaterialType::conductor, m.alpha = 0.5, m.multiple_scattering = true;
+                m.eta = {0.2, 0.9, 2.5}, m.k = {3.4, 1.5, 0.8};
+              }));
+  check_scene("principled", box_with([](Material& m) {
+                m.type = MaterialType::principled, m.alpha = 0.3, m.metallic = 0.4;
+                m.ks = Vec3d(0.04), m.sheen = 0.7, m.clearcoat = 0.8, m.clearcoat_roughness = 0.4;
+              }));
 }
 
 TEST_CASE("mirrors and glass agree with castRay, whether their caustics come from lights or by chance",
