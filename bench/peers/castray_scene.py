@@ -3,72 +3,95 @@
 import json
 import math
 import re
-import sys
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import tinyobjloader
 
-
-@dataclass
-class Material:
-    """Colours are linear RGB; `ke` is emitted radiance."""
-
-    name: str
-    type: str = "diffuse"
-    kd: list = field(default_factory=lambda: [0.5, 0.5, 0.5])
-    ks: list = field(default_factory=lambda: [0.0, 0.0, 0.0])
-    reflectance: list = field(default_factory=lambda: [0.8, 0.8, 0.8])
-    ke: list = field(default_factory=lambda: [0.0, 0.0, 0.0])
-    alpha: float = 0.0
-    ior: float = 1.5
-    two_sided_emission: bool = False
-
-    @property
-    def emits(self):
-        return max(self.ke) > 0
+from castray_materials import Material, grey, json_material, mtl_material, no_equal, no_equal_of
 
 
 @dataclass
 class Mesh:
-    """Triangles of one material; `normals`, if any, are one per corner: (triangles, 3, 3)."""
+    """Triangles of one material; `normals` and `uvs`, if any, are one per corner: (triangles, 3, 3) and (triangles, 3, 2).
+    `places` are the matrices of its copies, if it is an instance's."""
 
     positions: np.ndarray
     triangles: np.ndarray
     normals: np.ndarray | None
+    uvs: np.ndarray | None
     material: Material
+    places: list | None = None
+
+
+@dataclass
+class Lens:
+    radius: float
+    focus_distance: float
+    blades: int
+    rotation: float  # degrees
+
+
+@dataclass
+class Camera:
+    """`type` and units as in docs/scenes.md; `fov` is vertical, in degrees."""
+
+    position: np.ndarray
+    look_at: np.ndarray
+    up: np.ndarray
+    type: str = "perspective"
+    fov: float = 40
+    height: float = 0
+    shift: tuple = (0, 0)
+    lens: Lens | None = None
+
+
+@dataclass
+class Environment:
+    """A radiance, or an image of it."""
+
+    radiance: list
+    file: Path | None = None
+    scale: list = field(default_factory=lambda: [1, 1, 1])
+    rotation: float = 0  # degrees
 
 
 @dataclass
 class Scene:
-    position: np.ndarray
-    look_at: np.ndarray
-    up: np.ndarray
-    fov: float  # vertical, degrees
+    camera: Camera
     width: int
     height: int
-    environment: list
+    environment: Environment
     meshes: list
+    lights: list  # without size: the scene file's entries
 
     @property
-    def lights(self):
-        """The number of emitting triangles."""
+    def emitting_triangles(self):
         return sum(len(mesh.triangles) for mesh in self.meshes if mesh.material.emits)
 
-    def refuse(self, peer, types=()):
-        """Stops, with the exit code that tells `castray bench` so, where the peer has no equal of what the scene asks for."""
+    def features(self):
+        """What not every renderer has, by name."""
+        if self.camera.type != "perspective":
+            yield f"{self.camera.type} cameras"
+        if self.camera.lens:
+            yield "lenses"
+        if any(self.camera.shift):
+            yield "shifted images"
+        if self.environment.file:
+            yield "images of the environment"
+        for light in self.lights:
+            yield f"{light['type']} lights"
         for mesh in self.meshes:
-            material = mesh.material
-            if material.type in types:
-                no_equal(f"{peer}: material '{material.name}': no equal of '{material.type}'")
-            if material.emits and material.two_sided_emission:
-                no_equal(f"{peer}: material '{material.name}': no equal of two-sided emission")
+            if mesh.places:
+                yield "instances"
+            yield from mesh.material.features()
 
-
-def no_equal(message):
-    print(message, file=sys.stderr)
-    raise SystemExit(77)
+    def refuse(self, peer, equals=()):
+        """Stops where the peer has no equal of what the scene asks for; `equals` are the features that it has."""
+        for feature in self.features():
+            if feature not in equals:
+                no_equal(f"{peer}: no equal of {feature}")
 
 
 def read_commented_json(path):
@@ -77,44 +100,8 @@ def read_commented_json(path):
     return json.loads(without)
 
 
-def no_equal_of(what, entry, known):
-    """Stops where the entry asks for something that is not exported to peers."""
-    for key in entry:
-        if key not in known:
-            no_equal(f"{what}: no equal of '{key}'")
-
-
-def json_material(name, entry):
-    names = [known.name for known in fields(Material)]
-    no_equal_of(f"material '{name}'", entry, names + ["roughness"])
-    if entry.get("type", "diffuse") not in ("diffuse", "conductor", "dielectric", "microfacet"):
-        no_equal(f"material '{name}': no equal of '{entry['type']}'")
-    values = {"name": name}
-    for key, value in entry.items():
-        if isinstance(value, dict) or (isinstance(value, str) and key != "type"):
-            no_equal(f"material '{name}': no equal of this {key}")
-        grey = key in ("kd", "ks", "reflectance", "ke") and not isinstance(value, list)
-        values[key] = [value] * 3 if grey else value
-    roughness = values.pop("roughness", None)
-    material = Material(**values)
-    if roughness is not None:
-        material.alpha = roughness ** 2
-    return material
-
-
-def mtl_material(source):
-    """The mapping that `castray info` prints, without textures."""
-    if source.diffuse_texname:
-        raise SystemExit(f"material '{source.name}': textures are not exported to peers")
-    material = Material(name=source.name, kd=list(source.diffuse), ke=list(source.emission))
-    glossy_alpha = math.sqrt(2 / (source.shininess + 2))
-    if source.illum in (3, 5) or source.metallic == 1:
-        material.type, material.reflectance, material.alpha = "conductor", list(source.specular), glossy_alpha
-    elif source.illum in (4, 6, 7, 9) and source.ior > 1:
-        material.type, material.ior = "dielectric", source.ior
-    elif max(source.specular) > 0:
-        material.type, material.ks, material.alpha = "microfacet", list(source.specular), glossy_alpha
-    return material
+def matrix_of_rows(numbers):
+    return np.vstack([np.reshape(numbers, (3, 4)), [0, 0, 0, 1]])
 
 
 def transform_matrix(steps):
@@ -133,7 +120,7 @@ def transform_matrix(steps):
             cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
             one[:3, :3] += math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
         else:
-            raise SystemExit(f"transform '{kind}' is not exported to peers")
+            one = matrix_of_rows(value)
         matrix = one @ matrix
     return matrix
 
@@ -149,49 +136,90 @@ def read_obj(path, matrix, material, use_normals):
     positions = np.array(attributes.vertices, np.float64).reshape(-1, 3)
     positions = positions @ matrix[:3, :3].T + matrix[:3, 3]
     normals = np.array(attributes.normals, np.float64).reshape(-1, 3)
+    texture_points = np.array(attributes.texcoords, np.float64).reshape(-1, 2)
     meshes = [shape.mesh for shape in reader.GetShapes()]
 
     def corners(read):  # as lists: the binding's numpy views have broken strides
         return np.concatenate([np.array(read(mesh), np.int64) for mesh in meshes])
 
+    def of_corners(values, indices):
+        indices = indices.reshape(-1, 3)
+        return values[indices] if len(values) and (indices >= 0).all() else None
+
     triangles = corners(lambda mesh: mesh.vertex_indices()).reshape(-1, 3).astype(np.uint32)
-    normal_indices = corners(lambda mesh: mesh.normal_indices()).reshape(-1, 3)
+    corner_normals = of_corners(normals, corners(lambda mesh: mesh.normal_indices())) if use_normals else None
+    uvs = of_corners(texture_points, corners(lambda mesh: mesh.texcoord_indices()))
     owners = corners(lambda mesh: mesh.material_ids)
-    if np.linalg.det(matrix[:3, :3]) < 0:
-        triangles = triangles[:, ::-1]
-    corner_normals = None
-    if use_normals and len(normals) and (normal_indices >= 0).all():
-        corner_normals = normals[normal_indices] @ np.linalg.inv(matrix[:3, :3])
+    if corner_normals is not None:
+        corner_normals = corner_normals @ np.linalg.inv(matrix[:3, :3])
         corner_normals /= np.linalg.norm(corner_normals, axis=2, keepdims=True)
-        if np.linalg.det(matrix[:3, :3]) < 0:
-            corner_normals = corner_normals[:, ::-1]
+    if np.linalg.det(matrix[:3, :3]) < 0:
+        triangles, corner_normals, uvs = (
+            values if values is None else values[:, ::-1] for values in (triangles, corner_normals, uvs))
     if material:
-        return [Mesh(positions, triangles, corner_normals, material)]
+        return [Mesh(positions, triangles, corner_normals, uvs, material)]
     sources = reader.GetMaterials()
     by_material = []
     for owner in np.unique(owners):
         chosen = owners == owner
         mapped = mtl_material(sources[owner]) if owner >= 0 else Material(name="default")
-        chosen_normals = corner_normals[chosen] if corner_normals is not None else None
-        by_material.append(Mesh(positions, triangles[chosen], chosen_normals, mapped))
+        chosen_normals, chosen_uvs = (values if values is None else values[chosen] for values in (corner_normals, uvs))
+        by_material.append(Mesh(positions, triangles[chosen], chosen_normals, chosen_uvs, mapped))
     return by_material
+
+
+def read_meshes(entries, materials, folder):
+    meshes = []
+    for entry in entries:
+        no_equal_of("mesh", entry, ["obj", "material", "transform", "normals"])
+        material = materials[entry["material"]] if "material" in entry else None
+        meshes += read_obj(folder / entry["obj"], transform_matrix(entry.get("transform", [])), material,
+                           entry.get("normals", "file") == "file")
+    return meshes
+
+
+def read_instances(source, materials, folder):
+    meshes = []
+    for entry in source.get("instances", []):
+        no_equal_of("instance", entry, ["object", "transform", "transforms"])
+        after = transform_matrix(entry.get("transform", []))
+        places = [after @ matrix_of_rows(rows) for rows in entry.get("transforms", [np.eye(4)[:3]])]
+        for mesh in read_meshes(source["objects"][entry["object"]], materials, folder):
+            mesh.places = places
+            meshes.append(mesh)
+    return meshes
+
+
+def read_camera(entry):
+    no_equal_of("camera", entry, ["type", "position", "look_at", "up", "fov", "height", "shift", "lens"])
+    position, look_at = np.array(entry["position"], float), np.array(entry["look_at"], float)
+    camera = Camera(position, look_at, np.array(entry.get("up", [0, 1, 0]), float), entry.get("type", "perspective"),
+                    entry.get("fov", 40), entry.get("height", 0), tuple(entry.get("shift", (0, 0))))
+    if "lens" in entry:
+        lens = entry["lens"]
+        no_equal_of("lens", lens, ["radius", "f_number", "sensor_height", "focus_distance", "blades", "rotation"])
+        focal_length = lens.get("sensor_height", 0) / (2 * math.tan(math.radians(camera.fov) / 2))
+        radius = lens["radius"] if "radius" in lens else focal_length / (2 * lens["f_number"])
+        distance = lens.get("focus_distance", np.linalg.norm(look_at - position))
+        camera.lens = Lens(radius, distance, lens.get("blades", 0), lens.get("rotation", 0))
+    return camera
+
+
+def read_environment(entry, folder):
+    no_equal_of("environment", entry, ["radiance", "image", "scale", "rotation"])
+    file = folder / entry["image"] if "image" in entry else None
+    return Environment(grey(entry.get("radiance", 0)), file, grey(entry.get("scale", 1)), entry.get("rotation", 0))
 
 
 def read_scene(path):
     path = Path(path)
     source = read_commented_json(path)
-    no_equal_of("scene", source, ["$schema", "camera", "image", "materials", "meshes", "environment", "render"])
-    no_equal_of("camera", source["camera"], ["position", "look_at", "up", "fov"])
-    no_equal_of("environment", source.get("environment", {}), ["radiance"])
-    materials = {name: json_material(name, entry) for name, entry in source.get("materials", {}).items()}
-    meshes = []
-    for entry in source["meshes"]:
-        material = materials[entry["material"]] if "material" in entry else None
-        meshes += read_obj(path.parent / entry["obj"], transform_matrix(entry.get("transform", [])), material,
-                           entry.get("normals", "file") == "file")
-    camera = source["camera"]
+    no_equal_of("scene", source, ["$schema", "camera", "image", "materials", "meshes", "objects", "instances", "lights",
+                                  "environment", "instancing", "render"])
+    described = source.get("materials", {})
+    materials = {name: json_material(name, entry, path.parent, described) for name, entry in described.items()}
+    meshes = read_meshes(source.get("meshes", []), materials, path.parent) + read_instances(source, materials, path.parent)
     image = source.get("image", {})
-    return Scene(position=np.array(camera["position"], float), look_at=np.array(camera["look_at"], float),
-                 up=np.array(camera.get("up", [0, 1, 0]), float), fov=camera["fov"],
-                 width=image.get("width", 784), height=image.get("height", 784),
-                 environment=source.get("environment", {}).get("radiance", [0, 0, 0]), meshes=meshes)
+    return Scene(camera=read_camera(source["camera"]), width=image.get("width", 784), height=image.get("height", 784),
+                 environment=read_environment(source.get("environment", {}), path.parent), meshes=meshes,
+                 lights=source.get("lights", []))

@@ -60,20 +60,22 @@ def write_ply(path, mesh):
 def scene_dictionary(mi, scene, arguments, folder):
     glossy = any(mesh.material.type == "conductor" for mesh in scene.meshes)
     sampler = arguments.sampler if arguments.sampler != "auto" else "ldsampler" if glossy else "multijitter"
+    camera = scene.camera
     result = {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": -1},
         "sensor": {
-            "type": "perspective", "fov": scene.fov, "fov_axis": "y",
-            "to_world": mi.ScalarTransform4f().look_at(origin=scene.position.tolist(), target=scene.look_at.tolist(),
-                                                       up=scene.up.tolist()),
+            "type": "perspective", "fov": camera.fov, "fov_axis": "y",
+            "to_world": mi.ScalarTransform4f().look_at(origin=camera.position.tolist(), target=camera.look_at.tolist(),
+                                                       up=camera.up.tolist()),
             "film": {"type": "hdrfilm", "width": scene.width, "height": scene.height, "pixel_format": "rgb",
                      "component_format": "float32", "rfilter": {"type": "box"}},
             "sampler": {"type": sampler, "sample_count": arguments.spp},
         },
     }
-    if max(scene.environment) > 0:
-        result["environment"] = {"type": "constant", "radiance": {"type": "rgb", "value": scene.environment}}
+    radiance = scene.environment.radiance
+    if max(radiance) > 0:
+        result["environment"] = {"type": "constant", "radiance": {"type": "rgb", "value": radiance}}
     for number, mesh in enumerate(scene.meshes):
         file = Path(folder, f"{number}.ply")
         write_ply(file, mesh)
@@ -101,7 +103,7 @@ def replicated(render, arguments):
 
 def main():
     arguments, scene = peer.parse(__doc__, options)
-    scene.refuse("mitsuba", types=("microfacet",))
+    scene.refuse("mitsuba")
     if arguments.variant.startswith("llvm"):
         os.environ.setdefault("DRJIT_LIBLLVM_PATH", "/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1")
     import mitsuba as mi
