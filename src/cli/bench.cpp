@@ -10,7 +10,7 @@
 #include "castray/image.h"
 #include "cli/bench_meter.h"
 #include "cli/commands.h"
-#include "cli/configuration.h"
+#include "cli/display_flags.h"
 #include "cli/peer.h"
 #include "cli/process.h"
 #include "cli/scene_bench.h"
@@ -52,14 +52,17 @@ void check_flags(const BenchFlags& flags) {
   for (const double seconds : flags.seconds)
     if (!(seconds > 0)) throw InputError("--seconds: each budget must be above 0");
   for (const std::string& peer : flags.peers) Peer::parse(peer);
-  for (const std::string& configuration : flags.configurations)
-    configured_request({}, split_configuration(configuration).flags);
+  if (flags.equal_time && !(*flags.equal_time > 0)) throw InputError("--equal-time: must be above 0");
+  check_distinct({flags.json, flags.csv, flags.html, flags.svg});
   for (const std::string& file : {flags.json, flags.csv, flags.html, flags.svg})
     if (!file.empty()) check_writable(file);
+  std::error_code failed;
+  if (!flags.pictures.empty()) std::filesystem::create_directories(flags.pictures, failed);
+  if (failed) throw InputError({flags.pictures}, "cannot be made a folder: " + failed.message());
+  for (const std::string& scene : flags.scenes) check_bench_scene(flags, scene);
 }
 
 void write_pictures(const std::filesystem::path& folder, const BenchScene& scene) {
-  std::filesystem::create_directories(folder);
   const auto write = [&](const std::string& name, const Image& image) {
     write_image(folder / fmt::format("{}.{}.png", scene.name, as_file_name(name)), image);
   };

@@ -60,7 +60,7 @@ struct Compare {
   void check_outputs(bool folders) const {
     if (folders && !heat_map_file.empty())
       throw InputError("--heatmap: draws one pair of images; use --html for folders");
-    check_one_standard_output({json, junit, html, heat_map_file});
+    check_distinct({json, junit, html, heat_map_file});
     for (const fs::path& output : {json, junit, html})
       if (!output.empty()) check_writable(output);
     if (!heat_map_file.empty()) check_output_image(heat_map_file);

@@ -38,7 +38,7 @@ struct Convert {
     if (is_convertible_scene(input)) return run_scene(common);
     const Display display = flags.display();
     if (!common.quiet) warn_of_darkening(display.tone);
-    check_one_standard_output(outputs);
+    check_distinct(outputs);
     for (const auto& output : outputs) check_output_image(output);
     const bool any_encoded = std::any_of(outputs.begin(), outputs.end(), is_encoded_format);
     if (flags.exposure != 0 && !any_encoded)

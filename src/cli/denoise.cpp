@@ -42,7 +42,7 @@ struct Denoise {
   DisplayFlags flags;
 
   void check() const {
-    check_one_standard_output(outputs);
+    check_distinct(outputs);
     for (const auto& output : outputs) {
       check_output_image(output);
       if (!holds_metadata(output))

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <set>
+#include <system_error>
 
 #include "castray/error.h"
 #include "cli/values.h"
@@ -43,9 +46,19 @@ void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files
       .required();
 }
 
-void check_one_standard_output(const std::vector<std::filesystem::path>& files) {
+void check_distinct(const std::vector<std::filesystem::path>& files) {
   if (std::count_if(files.begin(), files.end(), is_standard_output) > 1)
     throw InputError("more than one output goes to the standard output; give the others names of files");
+  std::set<std::filesystem::path> targets;
+  for (const auto& file : files) {
+    std::error_code ignored;
+    if (file.empty() || is_standard_output(file)) continue;
+    const bool is_device = std::filesystem::is_other(file, ignored);
+    if (!is_device &&
+        !targets.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(file), ignored)).second)
+      throw InputError({file.string()},
+                       "more than one output goes to this file; give the others other names");
+  }
 }
 
 void tell_written(const std::vector<std::filesystem::path>& files) {

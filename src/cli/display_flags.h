@@ -36,8 +36,8 @@ inline constexpr const char* layer_help = "of an EXR file with several layers, s
 /// -o FILE, repeatable and required.
 void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files);
 
-/// Throws InputError where more than one of the files is the standard output.
-void check_one_standard_output(const std::vector<std::filesystem::path>& files);
+/// Throws InputError where two outputs are one file, or both the standard output: one would be lost.
+void check_distinct(const std::vector<std::filesystem::path>& files);
 
 /// Says on stderr which files were written.
 void tell_written(const std::vector<std::filesystem::path>& files);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cli/command_line.h"
+#include "cli/standard_streams.h"
 #include "core/text.h"
 
 namespace {
@@ -37,8 +38,10 @@ int main(int argc, char** argv) {
     return 2;
   };
   const auto fail_output = [&] {
+    if (errno == EPIPE) castray::cli::end_by_closed_pipe();
     return fail(("standard output: cannot be written: " + std::string(std::strerror(errno))).c_str());
   };
+  castray::cli::guard_standard_streams();
   std::set_terminate(terminate);
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails as on a full disk
   try {

@@ -103,7 +103,7 @@ struct Merge {
   int run(const CommonFlags& common) const {
     const Display display = flags.display();
     if (!common.quiet) warn_of_darkening(display.tone);
-    check_one_standard_output(outputs);
+    check_distinct(outputs);
     for (const auto& output : outputs) check_output_image(output);
     if (!fits()) return merge_in_bands(display, common);
     FilmMeter meter;

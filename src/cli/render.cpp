@@ -68,7 +68,7 @@ RenderResult run_limited(RenderRun& run, const RenderRequest& request, const Sce
 int render_loaded(const RenderCommand& command, const CommonFlags& common, Scene& scene,
                   RenderRun::Clock::time_point begin) {
   RenderRequest request = request_of(command, common, scene);
-  check(request);
+  check(request, command.scene);
   apply_flags(request, scene);
   RenderReport report{scene, request.options, command.given};
   report.tells_time = request.metadata_time;
@@ -102,7 +102,7 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
   try {
     return render_loaded(command, common, scene, begin);
   } catch (const InputError& error) {
-    throw placed_error(error, command, scene);
+    throw placed_error(error, scene, [&](std::string_view flag) { return command.is_given(flag); });
   }
 }
 

@@ -1,6 +1,8 @@
 #include "cli/render_command.h"
 
 #include <algorithm>
+#include <optional>
+#include <system_error>
 
 #include "castray/error.h"
 #include "cli/display_flags.h"
@@ -83,18 +85,19 @@ RenderRequest request_of(const RenderCommand& command, const CommonFlags& common
   return request;
 }
 
-InputError placed_error(const InputError& error, const RenderCommand& command, const Scene& scene) {
+InputError placed_error(const InputError& error, const Scene& scene,
+                        const std::function<bool(std::string_view)>& is_given) {
   const std::string_view text = error.what();
   for (const RenderDefault& given : scene.render_defaults) {
     const std::string flag = "--" + given.name;
     const bool is_of_flag = text.starts_with(flag) && text.substr(flag.size()).find_first_of(" :") == 0;
-    if (is_of_flag && !command.is_given(given.name)) return {given.place, std::string(text)};
+    if (is_of_flag && !is_given(given.name)) return {given.place, std::string(text)};
   }
   return error;
 }
 
 /// All that could spoil the result is found before the work starts.
-void check(const RenderRequest& request) {
+void check(const RenderRequest& request, const fs::path& scene) {
   if (request.resume && !request.checkpoint)
     throw InputError("--resume: needs --checkpoint FILE to resume from");
   if (request.replicates && (request.checkpoint || request.preview_seconds || request.options.time_limit ||
@@ -107,8 +110,13 @@ void check(const RenderRequest& request) {
   for (const fs::path& output : request.outputs) check_output_image(output);
   check_passes(request);
   std::vector<fs::path> all = request.outputs;
-  if (request.stats) all.push_back(*request.stats);
-  check_one_standard_output(all);
+  for (const std::optional<fs::path>& file : {request.stats, request.checkpoint})
+    if (file) all.push_back(*file);
+  check_distinct(all);
+  std::error_code ignored;
+  for (const fs::path& file : all)
+    if (fs::equivalent(file, scene, ignored))
+      throw InputError({file.string()}, "is the scene itself; give another name");
   if (request.stats) check_writable(*request.stats);
 }
 

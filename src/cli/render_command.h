@@ -1,6 +1,9 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "castray/error.h"
@@ -32,10 +35,12 @@ Scene load_told(const std::string& file, const std::vector<GivenFlag>& given, co
 /// Throws InputError where a value cannot be, also one of the scene's own defaults.
 RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene);
 
-/// The same error, at its place in the scene file where it is of one of the scene's own defaults.
-InputError placed_error(const InputError& error, const RenderCommand& command, const Scene& scene);
+/// The same error, at its place in the scene file where it is of one of the scene's own defaults, which no
+/// given flag replaces.
+InputError placed_error(const InputError& error, const Scene& scene,
+                        const std::function<bool(std::string_view)>& is_given);
 
-/// Finds what could spoil the result before the work starts. Throws InputError.
-void check(const RenderRequest& request);
+/// Finds what could spoil the result, or the scene's file, before the work starts. Throws InputError.
+void check(const RenderRequest& request, const std::filesystem::path& scene);
 
 }  // namespace castray::cli

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
+#include <string_view>
 
 #include "bench/measure.h"
 #include "castray/error.h"
@@ -12,6 +14,7 @@
 #include "cli/bench_reference.h"
 #include "cli/configuration.h"
 #include "cli/peer.h"
+#include "cli/render_command.h"
 
 namespace castray::cli {
 
@@ -42,11 +45,38 @@ std::filesystem::path default_cache() {
   return std::filesystem::path(home && *home ? home : ".") / ".cache/castray";
 }
 
+/// Whether a text of flags has one.
+std::function<bool(std::string_view)> has_flag(const std::string& flags) {
+  return [words = " " + flags + " "](std::string_view flag) {
+    return words.find(" --" + std::string(flag) + " ") != std::string::npos;
+  };
+}
+
 /// One scene's benchmark: what it needs, made from the flags.
 class SceneBench {
  public:
   SceneBench(const BenchFlags& flags, const std::string& file, BenchMeter& meter)
       : flags_(flags), file_(file), meter_(meter), scene_(load_scene(file)) {}
+
+  /// Throws what later renders would, before the first of them takes its time.
+  void check() const {
+    const auto check_one = [&](const std::string& flag, const std::string& flags) {
+      try {
+        RenderRequest request = configured_request(scene_, flags);
+        if (!flags_.size.empty()) parse_size(flags_.size, request.options.width, request.options.height);
+        prepare(scene_, request);
+      } catch (const InputError& error) {
+        const InputError told = placed_error(error, scene_, has_flag(flags));
+        const bool has_place = std::string_view(told.what()).starts_with(scene_.file.string());
+        throw has_place ? told : InputError(flag + ": " + told.what());
+      }
+    };
+    if (flags_.reference.empty()) check_one("--reference-flags", flags_.reference_flags);
+    for (const std::string& text : flags_.configurations) {
+      const Configuration configuration = split_configuration(text);
+      check_one("--config " + configuration.name, configuration.flags);
+    }
+  }
 
   BenchScene run() {
     BenchScene result;
@@ -56,9 +86,7 @@ class SceneBench {
     result.reference_image = reference.mean();
     const PixelMask mask = make_mask(result);
     result.reference_noise = reference_noise(reference, mask);
-    const BenchPlan plan{flags_.spp, flags_.seconds, flags_.seeds,
-                         flags_.equal_time > 0 ? std::optional(flags_.equal_time) : std::nullopt,
-                         std::nullopt};
+    const BenchPlan plan{flags_.spp, flags_.seconds, flags_.seeds, flags_.equal_time, std::nullopt};
     measure(result, contenders(result), reference, mask, plan,
             [&](const BenchProgress& progress) { meter_.tell(progress); });
     return result;
@@ -133,6 +161,11 @@ class SceneBench {
 };
 
 }  // namespace
+
+void check_bench_scene(const BenchFlags& flags, const std::string& file) {
+  BenchMeter meter(true);
+  SceneBench(flags, file, meter).check();
+}
 
 BenchScene bench_scene(const BenchFlags& flags, const std::string& file, BenchMeter& meter) {
   return SceneBench(flags, file, meter).run();

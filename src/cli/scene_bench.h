@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct BenchFlags {
   std::vector<std::uint64_t> spp;
   std::vector<double> seconds;
   std::uint64_t seeds = 8;
-  double equal_time = 0;
+  std::optional<double> equal_time;
   std::string size;
   std::string reference, reference_flags = "--reuse off", cache;
   std::uint64_t reference_spp = 1024;
@@ -25,6 +26,9 @@ struct BenchFlags {
   std::string json, csv, html, svg, pictures;
   bool quiet = false;
 };
+
+/// Throws InputError where the scene cannot be read, or a configuration cannot render it.
+void check_bench_scene(const BenchFlags& flags, const std::string& file);
 
 /// The benchmark of one scene file.
 BenchScene bench_scene(const BenchFlags& flags, const std::string& file, BenchMeter& meter);

@@ -170,6 +170,14 @@ TEST_CASE("what bench cannot use gets one line and exit code 2") {
   refused({"--config", "a=--samplr sobol"}, "sampler");
   refused({"--config", "a=--spp 4"}, "--spp");
   refused({"--config", "flags without a name"}, "NAME=FLAGS");
+  const std::string endless = "4000000000";  // what can be known is told before the references
+  refused({"--config", "a=--isa odd", "--reference-spp", endless}, "--config a: --isa odd: unknown");
+  refused({"--config", "a=--isa avx2 --epsilon 1e-5", "--reference-spp", endless}, "--config a: --isa avx2");
+  refused({"--config", config, "missing.json", "--reference-spp", endless}, "missing.json: does not exist");
+  refused({"--config", config, "--pictures", "/dev/null/p", "--reference-spp", endless},
+          "/dev/null/p: cannot be made");
+  refused({"--config", config, "--json", "r", "--csv", "./r"}, "more than one output");
+  refused({"--config", config, "--equal-time", "-1"}, "--equal-time");
   refused({"--config", config, "--seeds", "0"}, "--seeds");
   refused({"--config", config, "--peer", "x=render {scene} {spp}"}, "{out}");
   refused({"--config", config, "--peer", "x=echo {scene} {spp} {out} >&2; exit 3"}, "exit code 3: ");

@@ -1,6 +1,8 @@
 // The forms in which people write command lines, on every command.
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/argument_forms.h"
@@ -137,6 +139,55 @@ TEST_CASE("info takes several files of any kind") {
   CHECK(result.exit_code == 0);
   CHECK_THAT(result.out, Contains("scene      s.json\n") && Contains("\nimage      a.pfm\n") &&
                              Contains("\nimage      f.film\n"));
+}
+
+TEST_CASE("messages that nobody can be told cost no image") {
+  const Files files;
+  const Words render = with({"render", "s.json", "-o", "x.pfm"}, small);
+  REQUIRE(files.run(render).exit_code == 0);
+  const std::string image = read_file(files.folder / "x.pfm");
+  std::filesystem::remove(files.folder / "x.pfm");
+  CHECK(
+      run_castray(render, RunSettings{.folder = files.folder.path(), .error_file = "/dev/full"}).exit_code ==
+      0);
+  CHECK(read_file(files.folder / "x.pfm") == image);
+  for (const std::string streams : {"2>&-", "<&- >&- 2>&-", "2>&1 | true"}) {
+    CAPTURE(streams);
+    std::filesystem::remove(files.folder / "x.pfm");
+    const std::string command = "cd '" + files.folder.path().string() +
+                                "' && " CASTRAY_PROGRAM " render s.json --size 8x8 --spp 1 -o x.pfm " +
+                                streams;
+    CHECK(std::system(command.c_str()) == 0);
+    CHECK(read_file(files.folder / "x.pfm") == image);
+  }
+}
+
+TEST_CASE("no output replaces another one, or the scene") {
+  const Files files;
+  const std::string scene = read_file(files.folder / "s.json");
+  const auto refused = [&](const Words& words, const std::string& message) {
+    CAPTURE(message);
+    const RunResult result = files.run(words);
+    CHECK(result.exit_code == 2);
+    CHECK(result.err == "castray: error: " + message + "\n");
+  };
+  const std::string twice = ": more than one output goes to this file; give the others other names";
+  refused(with({"render", "s.json", "-o", "x.png", "--stats", "./x.png"}, small), "./x.png" + twice);
+  refused(with({"render", "s.json", "-o", "x.film", "--checkpoint", "x.film"}, small), "x.film" + twice);
+  refused({"convert", "a.pfm", "-o", "x.png", "-o", "x.png"}, "x.png" + twice);
+  refused({"compare", "a.pfm", "a.pfm", "--json", "r", "--html", "r"}, "r" + twice);
+  refused(with({"render", "s.json", "-q", "--stats", "./s.json"}, small),
+          "./s.json: is the scene itself; give another name");
+  CHECK(read_file(files.folder / "s.json") == scene);
+}
+
+TEST_CASE("what a scene's own defaults cannot be is told at its place by every command that renders") {
+  const Files files;
+  write_file(files.folder / "d.json",
+             "{ \"render\": {\n \"isa\": \"odd\" }, \"meshes\": [ { \"obj\": \"t.obj\" } ] }");
+  for (const char* command : {"render", "bench", "serve"})
+    CHECK_THAT(files.run({command, "d.json", "-q"}).err,
+               Catch::StartsWith("castray: error: d.json:2:2: --isa odd: unknown"));
 }
 
 TEST_CASE("what every command cannot write to the standard output is an error") {
