@@ -109,6 +109,19 @@ struct MirroredLightList {
   int count;
 };
 
+/// An EmissionGuide. Directions fall in bins on the faces +x, -x, +y, -y, +z, -z of a cube, each of them
+/// guide_steps x guide_steps squares.
+inline constexpr uint32_t guide_step_bits = 3, guide_steps = 1 << guide_step_bits;
+inline constexpr uint32_t guide_bins = 6 * guide_steps * guide_steps;
+inline constexpr uint32_t guide_search = 4 * guide_steps * guide_steps;  ///< a power of two below guide_bins
+inline constexpr uint32_t no_guide = 0xffffffff;
+struct EmissionGuideTable {
+  const uint32_t* row_of_cell;  ///< or no_guide; x varies fastest. Null: nothing is known
+  const float* cumulative;      ///< of each row guide_bins + 1 probabilities, from 0 to 1
+  float lower[3], cells_per_unit;
+  uint32_t cells[3];
+};
+
 struct MaterialTables;
 struct TriangleTable;
 
@@ -137,6 +150,7 @@ struct LightList {
   CellTable cells;
   LightRegions regions;
   MirroredLightList mirrored;
+  EmissionGuideTable emission;
 };
 
 /// Choices of a light for one opaque surface point, by the numbers u and deep of choose_light.

@@ -16,6 +16,7 @@ struct Plan {
   std::uint32_t features = 0;                ///< KernelFeature set of the kernel
   bool mis = false;                          ///< light and BSDF sampling share emission
   bool light_paths = false;                  ///< bring the caustics that the camera sees directly
+  double light_paths_per_pixel = 1;          ///< of the full image, for each sample
   int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
   int light_points = 0;                      ///< shared by each tile
   int environment_points = 0;                ///< likewise

@@ -7,8 +7,9 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// What light paths start with, by slot: greatest components.
+/// What light paths start with, by slot. Of colours greatest components.
 struct Emissions {
+  VecArray<batch_size> p;
   alignas(64) float flux[batch_size];      ///< of what the path carries, over the pixels of the image
   alignas(64) float radiance[batch_size];  ///< of the light
 };

@@ -92,12 +92,25 @@ struct TileResult {
   uint64_t edges[max_tiles] = {};  ///< by tile, a bit for each pixel: it sees an edge
 };
 
+/// What lights emit towards surfaces that focus.
+struct FocusedEmission {
+  int count;
+  const float* p[3];  ///< points of lights
+  const float* w[3];  ///< unit vectors along which it leaves them
+  const float* flux;  ///< greatest component, over the number of pixels
+};
+struct EmissionSink {
+  void* self;
+  void (*add)(void* self, const FocusedEmission&);
+};
+
 /// Some of the paths from lights of one sample, at most batch_size, that have numbers from `first` on, a
 /// multiple of batch_size.
 struct LightPathJob {
   uint64_t sample, first;
   int count;
-  int width, height;  ///< of the full image
+  int width, height;                       ///< of the full image
+  const EmissionSink* emission = nullptr;  ///< if not null: gets what is focused, and paths end there
 };
 
 /// Splats: radiance that light paths add to the pixels (x,y), over the number of light paths per pixel.

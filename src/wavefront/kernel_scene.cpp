@@ -110,4 +110,9 @@ void KernelSceneData::use(LightRegionTable regions, const Scene& scene) {
   view.lights.regions = lights.list().regions;
 }
 
+void KernelSceneData::use(EmissionGuide guide) {
+  emission = std::move(guide);
+  view.lights.emission = emission.table();
+}
+
 }  // namespace castray

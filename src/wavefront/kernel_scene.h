@@ -8,6 +8,7 @@
 #include "geometry/facets.h"
 #include "geometry/instance_bvh.h"
 #include "geometry/wide_bvh.h"
+#include "lights/emission_guide.h"
 #include "lights/environment.h"
 #include "lights/light_table.h"
 #include "materials/coverage.h"
@@ -26,6 +27,9 @@ struct KernelSceneData {
   /// Makes the choice of lights know regions.
   void use(LightRegionTable regions, const Scene& scene);
 
+  /// Leads light paths to mirrors and glass.
+  void use(EmissionGuide guide);
+
   bool is_list() const { return !bvh && !instances; }
 
   Facets facets;                              ///< of a list
@@ -37,6 +41,7 @@ struct KernelSceneData {
   KernelMaterials materials;
   LightTable lights;
   std::vector<MirroredLight> mirrored;
+  EmissionGuide emission;
   Environment environment;
   std::vector<KernelDelta> deltas;
   KernelScene view{};

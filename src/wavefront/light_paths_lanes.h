@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lights/emission_guide_lanes.h"
 #include "wavefront/follow_lanes.h"
 #include "wavefront/scratch_lanes.h"
 
@@ -21,9 +22,31 @@ CASTRAY_INLINE uint32_t light_path_key(const Context& c, const LightPathJob& job
   return lane(with_epoch(Uint(key), job.sample), 0);
 }
 
-/// Emits light paths: a light chosen by power, a point of its area, and a direction by the cosine. Their
-/// throughput is the colour of what they carry, over its greatest component, which
-/// `emissions` has.
+/// A direction in which a light emits, and what it carries over what it would if it were chosen by the
+/// cosine.
+struct Emitted {
+  Vec w;
+  Float weight;
+};
+
+/// By the cosine where nothing is known of the place; elsewhere most follow the guide. `choice` is used up.
+CASTRAY_INLINE Emitted emit(const EmissionGuideTable& guide, const Vec& p, const Vec& normal, Float choice,
+                            Float u, Float v) {
+  constexpr float guided_share = 0.8f;
+  const Vec by_cosine = to_world(make_frame(normal), cosine_hemisphere(u, v));
+  const GuideCell cell = guide_cell(guide, p);
+  if (none(cell.known)) return {by_cosine, Float(1.f)};
+  const Mask guided = cell.known & (choice < Float(guided_share));
+  const Vec by_guide = direction_in(guide, cell, choice * Float(1.f / guided_share), u, v);
+  const Vec w = select(guided, by_guide, by_cosine);
+  const Float cosine = max(dot(normal, w), Float(0.f)) * Float(1.f / pi);
+  const Float pdf = fma(Float(guided_share), pdf_of(guide, cell, w), Float(1 - guided_share) * cosine);
+  return {w, select(cell.known, select(cosine > Float(0.f), cosine / pdf, Float(0.f)), Float(1.f))};
+}
+
+/// Emits light paths: a light chosen by power, a point of its area, and a direction in which mirrors and
+/// glass are likely to be. Their throughput is the colour of what they carry, over its greatest component,
+/// which `emissions` has.
 CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob& job, Paths& out,
                                             Emissions& emissions) {
   LightList lights = c.scene.lights;
@@ -44,10 +67,11 @@ CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob
     const Vec normal = select(back, -point.normal, point.normal);
     const Vec emitted = point.weight * select(point.two_sided, Float(2 * pi), Float(pi));
     const Float most = max_component(emitted);
-    const Mask shines = first_lanes(job.count - i) & (most > Float(0.f));
+    const Emitted to = emit(c.scene.lights.emission, point.p, normal, choice.u[3], n.u[2], n.u[3]);
+    const Mask shines = first_lanes(job.count - i) & (most * to.weight > Float(0.f));
     const int k = out.count;
     compress_store(out.o, k, shines, fma(normal, point.error, point.p));
-    compress_store(out.d, k, shines, to_world(make_frame(normal), cosine_hemisphere(n.u[2], n.u[3])));
+    compress_store(out.d, k, shines, to.w);
     compress_store(out.throughput, k, shines, emitted * (Float(1.f) / most));
     compress_store(out.arrival + k, shines, Float(0.f));
     compress_store(out.eta2 + k, shines, Float(1.f));
@@ -57,10 +81,28 @@ CASTRAY_STAGE inline void start_light_paths(const Context& c, const LightPathJob
     compress_store(out.names.index + k, shines, index);
     compress_store(out.names.light_u + k, shines, Float(0.f));
     compress_store(out.names.light_v + k, shines, Float(0.f));
-    store(emissions.flux + i, most * Float(1.f / ((float)job.width * (float)job.height)));
+    store(emissions.p, i, point.p);
+    store(emissions.flux + i, most * to.weight * Float(1.f / ((float)job.width * (float)job.height)));
     store(emissions.radiance + i, max_component(point.weight) * point.density);
     out.count += count(shines);
   }
+}
+
+/// Tells which of the light paths with these first vertices have come to a surface that focuses. `out`: room
+/// for these.
+CASTRAY_STAGE inline void tell_focused(const Context& c, const Vertices& vertices, const Emissions& emissions,
+                                       const EmissionSink& sink, Emissions& out) {
+  VecArray<capacity> w;
+  int n = 0;
+  for (int i = 0; i < vertices.count; i += width) {
+    const Mask focused = first_lanes(vertices.count - i) & ~gathers(c.scene, records_of(vertices, i));
+    const Uint slot = select(focused, load(vertices.names.slot + i), Uint(0u));
+    compress_store(out.p, n, focused, gather_entries(emissions.p, slot));
+    compress_store(w, n, focused, -load(vertices.wo, i));
+    compress_store(out.flux + n, focused, gather(emissions.flux, slot));
+    n += count(focused);
+  }
+  sink.add(sink.self, {n, {out.p.x, out.p.y, out.p.z}, {w.x, w.y, w.z}, out.flux});
 }
 
 /// Traces light paths to their ends, and gives their splats to the sink.
@@ -76,6 +118,10 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
     closest<Geometry>(c, s.paths, false, s.hits);
     absorb<Geometry>(c, s.hits, false, s.paths);
     surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance, true);
+    if (job.emission) {
+      tell_focused(c, s.vertices, s.light_paths, *job.emission, s.focused);
+      break;
+    }
     if (vertex > 1) {
       CameraConnections& to = s.to_camera;
       connect_camera<Geometry, features>(c, job, vertex, s.vertices, s.hits, s.light_paths, to);

@@ -13,8 +13,8 @@ namespace castray {
 
 namespace {
 
-/// Sums over splats: radiance, and the second moments of a sample of that light, by light paths, one for each
-/// pixel, and by chance.
+/// Sums over splats: radiance, and the second moments of a sample of that light, by light paths and by
+/// chance.
 struct SplatSums {
   Vec3d radiance, by_light, by_chance;
   double rays = 0;
@@ -38,7 +38,8 @@ std::size_t batches_of(const Pilot& pilot) {
   return std::clamp(pixels / (2 * batch_size), fewest, most);
 }
 
-/// Means over the light paths of a pilot.
+/// Means over the light paths of a pilot; rays, and what light paths make of a sample, of as many as an image
+/// has of them.
 SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const LightPathsJob& light_paths_job) {
   options.seed = hash_combine(0x9170fu, 0u);
   std::vector<SplatSums> batches(batches_of(pilot));
@@ -57,6 +58,8 @@ SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const Light
     means.by_chance += batch.by_chance * share;
     means.rays += batch.rays * share;
   }
+  means.by_light = means.by_light / pilot.light_paths_per_pixel;
+  means.rays *= pilot.light_paths_per_pixel;
   return means;
 }
 
@@ -154,6 +157,7 @@ struct Question {
   OpenChoices open;
   bool by_lights;    ///< caustics may be brought by light paths
   bool both;         ///< it is open whether they are
+  bool tried;        ///< then tiles were tried with caustics by chance, too
   bool list;         ///< as in Pilot
   std::size_t ways;  ///< 2: shared and plain paths; 1: plain ones
   SplatSums splats;
@@ -174,13 +178,23 @@ Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) 
   gains.sharing_by_lights = by_light.sharing();
   gains.reconstruction_by_lights = gain_of_reconstruction(rest.shared, caustics.by_light, rays, q.list);
   if (!q.both || !(max_component(q.splats.radiance) > 0)) return gains;
-  const Ways chance{figures[q.ways], figures.back()};
-  const double left = left_by_sharing(rest, chance, caustics.by_chance);
+  const Ways chance = q.tried ? Ways{figures[q.ways], figures.back()} : rest;
+  const double left = q.tried ? left_by_sharing(rest, chance, caustics.by_chance) : 1;
   const Products by_chance = products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0);
   gains.sharing_by_chance = by_chance.sharing();
   gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, caustics.by_chance * left, 0, q.list);
   gains.light_paths = by_chance.least(q.open.sharing) / by_light.least(q.open.sharing);
   return gains;
+}
+
+/// Whether light paths do better than chance even if sharing leaves as little of that as it can.
+bool light_paths_win(const Question& q, const std::vector<TechniqueFigures>& figures) {
+  const Ways rest{figures[0], figures[q.ways - 1]};
+  const CausticErrors caustics(q.splats, rest.plain.brightness);
+  const double least = caustics.by_chance / tile_pixels;
+  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, q.splats.rays);
+  const Products by_chance = products_of(rest, rest, caustics.by_chance, least, 0);
+  return by_light.least(q.open.sharing) < by_chance.least(q.open.sharing);
 }
 
 /// Logarithms of the gains of what is open: of light paths, and with caustics as these are chosen, of sharing
@@ -257,10 +271,15 @@ bool is_clear(const Question& q, const Pilot& pilot, const TileTrials& trials) {
 Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenChoices& open,
                  const LightPathsJob& light_paths_job) {
   const bool both = options.light_paths && open.caustics;
-  TileTrials trials(pilot, techniques_of(options, both));
+  TileTrials trials(pilot, techniques_of(options, false));
   if (!trials.try_more()) return {};
-  Question q{open, options.light_paths, both, pilot.list, options.suffixes > 0 ? 2u : 1u, {}};
+  Question q{open, options.light_paths, both, false, pilot.list, options.suffixes > 0 ? 2u : 1u, {}};
   if (options.light_paths) q.splats = try_light_paths(pilot, options, light_paths_job);
+  if (both && !light_paths_win(q, trials.figures())) {
+    q.tried = true;
+    trials = TileTrials(pilot, techniques_of(options, true));
+    trials.try_more();
+  }
   while (!is_clear(q, pilot, trials) && trials.try_more()) {
   }
   Gains gains = gains_of(q, trials.figures());

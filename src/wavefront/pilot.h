@@ -37,6 +37,9 @@ struct OpenChoices {
 /// much a path from the camera would bring that finds the same one: so caustics that are too rare for a pilot
 /// to find are not missed. Where its tiles find them often, these tell how much of it sharing leaves.
 ///
+/// Tiles are tried without chance where light paths would win whatever sharing leaves of it. Their gain is
+/// then that over chance of which it leaves all.
+///
 /// Tiles are tried in groups, until what a wrong choice is expected to lose is less than the time that
 /// another group would take.
 ///

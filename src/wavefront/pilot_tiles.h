@@ -18,6 +18,7 @@ struct Pilot {
   bool list;          ///< geometry is a list of facets instead of a tree
   int threads;
   RenderJob render_job;
+  double light_paths_per_pixel = 1;  ///< as in Plan
 };
 
 /// Of one technique, means over pixels. Errors are the sum over channels of the variance over replicates,

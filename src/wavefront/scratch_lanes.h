@@ -17,7 +17,7 @@ struct Scratch {
   Chains chains;
   alignas(64) uint32_t left_to_light_paths[Radiance::slots];  ///< see Context
   CameraConnections to_camera;
-  Emissions light_paths;
+  Emissions light_paths, focused;
   ShadowRays shadow_rays;
   Radiance radiance;
   Suffixes suffixes;

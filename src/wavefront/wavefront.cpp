@@ -17,6 +17,7 @@
 #include "wavefront/choose_kernel.h"
 #include "wavefront/edge_emission.h"
 #include "wavefront/kernel_scene.h"
+#include "wavefront/learn_emission.h"
 #include "wavefront/pilot.h"
 #include "wavefront/pixel_edges.h"
 #include "wavefront/repeated_tiles.h"
@@ -117,6 +118,7 @@ class WavefrontRun {
         options_(kernel_options(job.options, plan, differences_)),
         render_tiles_(kernel.render_tiles[plan.features]),
         trace_light_paths_(options_.light_paths ? kernel.trace_light_paths[plan.features] : nullptr),
+        light_paths_per_pixel_(plan.light_paths_per_pixel),
         bands_((window_.height() + tile_size - 1) / tile_size + 1),
         row_locks_(static_cast<std::size_t>(bands_)) {
     if (job.options.camera)
@@ -240,7 +242,7 @@ class WavefrontRun {
     }
   }
 
-  /// A band's part of a sample's light paths, one for each pixel of the full image.
+  /// A band's part of a sample's light paths.
   void trace_light_paths(int row, std::uint64_t sample, Workplace& workplace, Film& film, RowStats& stats) {
     struct Receiver {
       WavefrontRun& run;
@@ -257,7 +259,9 @@ class WavefrontRun {
                          }};
     const int width = window_.full_width, height = window_.full_height;
     const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    const std::uint64_t batches = (pixels + batch_size - 1) / batch_size;
+
+    const auto paths = static_cast<std::uint64_t>(light_paths_per_pixel_ * static_cast<double>(pixels));
+    const std::uint64_t batches = (paths + batch_size - 1) / batch_size;
     for (auto batch = static_cast<std::uint64_t>(row); batch < batches;
          batch += static_cast<std::uint64_t>(bands_)) {
       const std::uint64_t number = sample % replicate_length * batches + batch;
@@ -336,6 +340,7 @@ class WavefrontRun {
   KernelOptions options_;
   RenderTiles render_tiles_;
   TraceLightPaths trace_light_paths_;  ///< or null
+  double light_paths_per_pixel_;       ///< of the full image, for each sample
   int bands_;
   std::vector<std::mutex> row_locks_;
   std::vector<Workplace> workplaces_;
@@ -354,6 +359,7 @@ class Wavefront final : public PreparedIntegrator {
     if (job.options.max_depth == 1) return;
     if (job.options.lights == LightSampling::automatic && data_.lights.nodes() > 1)
       as_pilot([&] { learn_lights(scene, job); });
+    if (traces_light_paths(job.options, plan_)) as_pilot([&] { learn_emission(job); });
     const OpenChoices open{
         .caustics = job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_),
         .sharing = plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on,
@@ -424,11 +430,15 @@ class Wavefront final : public PreparedIntegrator {
       for (int i = 0; i < threads; ++i) workplaces_.emplace_back(wavefront.kernel_);
     }
     Pilot pilot(const Job& job) {
-      return {job.window.full_width, job.window.full_height, wavefront_.plan_.list, job.threads,
+      return {job.window.full_width,
+              job.window.full_height,
+              wavefront_.plan_.list,
+              job.threads,
               [this](const KernelOptions& options, const TileJob& tile, TileResult& result) {
                 wavefront_.kernel_.render_tiles[wavefront_.plan_.features](wavefront_.data_.view, options,
                                                                            tile, scratch(), result);
-              }};
+              },
+              wavefront_.plan_.light_paths_per_pixel};
     }
     LightPathsJob light_paths() {
       return [this](const KernelOptions& options, const LightPathJob& job, const SplatSink& sink) {
@@ -443,6 +453,18 @@ class Wavefront final : public PreparedIntegrator {
     const Wavefront& wavefront_;
     std::vector<Workplace> workplaces_;
   };
+
+  /// Leads light paths to where mirrors and glass are. That many fewer of them are enough.
+  void learn_emission(const Job& job) {
+    PilotJobs jobs(*this, job.threads);
+    const auto useful = [&] {
+      return useful_emission(jobs.pilot(job), kernel_options(job.options, plan_, false), jobs.light_paths());
+    };
+    const std::vector<UsefulEmission> unguided = useful();
+    data_.use(EmissionGuide(unguided));
+    plan_.light_paths_per_pixel = light_paths_enough(unguided.size(), useful().size());
+    if (plan_.light_paths_per_pixel == 1) data_.use(EmissionGuide());
+  }
 
   /// Keeps paths from lights, and shared paths, unless a pilot says that others do better.
   void choose_techniques(const Job& job, const OpenChoices& open) {
