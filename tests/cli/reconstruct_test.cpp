@@ -103,7 +103,6 @@ TEST_CASE("numbers of samples at edges that cannot be are refused") {
   refused({"9"}, "between 1 and 8");
   refused({"2", "--reconstruct", "off"}, "leave out --reconstruct off");
   refused({"2", "--reuse", "off"}, "leave out --reuse off");
-  refused({"2", "--target-error", "0.1"}, "cannot go with --target-error");
   refused({"2", "--integrator", "reference"}, "the reference integrator");
   refused({"2", "--replicates", "2", "--spp", "4"}, "cannot go with --replicates");
 }
