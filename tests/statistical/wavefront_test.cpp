@@ -17,7 +17,7 @@ TEST_CASE("the wavefront agrees with castRay on the standard scenes", "[statisti
 }
 
 TEST_CASE("the wavefront agrees with castRay on every material", "[statistical]") {
-  check_scene("narrow", box_with([](Material& m) { m.alpha = 0.05; }));
+  check_scene("narrow", box_with([](Material& m) { m.alpha = 0.05; }), 96);
   check_scene("rough glass", box_with([](Material& m) { m.type = MaterialType::dielectric, m.alpha = 0.4; }));
   check_scene("black", box_with([](Material& m) { m.type = MaterialType::diffuse, m.kd = Vec3d(0); }));
   check_scene("metal by its index, with multiple scattering", box_with([](Material& m) {
