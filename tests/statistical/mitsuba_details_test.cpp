@@ -44,7 +44,7 @@ const std::vector<std::string> details{"colours", "holes", "normals", "heights",
 /// By every way of rendering: 18 tests a scene.
 void check_against_mitsuba(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names)
-    for (const Way& way : every_way(wavefront_options(64, 8, 1)))
+    for (const Way& way : every_way(wavefront_options(64, 4, 1)))
       check(golden + folder + name + ".json", Expected(golden + folder + name), way);
 }
 
