@@ -5,7 +5,6 @@ cameras.py CASTRAY renders the scenes of tests/golden/cameras anew with Mitsuba,
 stored there and what castray renders, by z-test. cameras.py --write [VARIANT] makes the folder; castray's tests read it.
 """
 import json
-import sys
 
 import details
 import mitsuba as mi
@@ -26,8 +25,8 @@ CASES = {
 }
 
 
-def write_scene(name, keys):
-    scene = {**BOX, "camera": {"position": POSITION, "look_at": LOOK_AT, **keys}, "image": {"width": SIDE, "height": SIDE}}
+def write_scene(name):
+    scene = {**BOX, "camera": {"position": POSITION, "look_at": LOOK_AT, **CASES[name][0]}, "image": {"width": SIDE, "height": SIDE}}
     del scene["$schema"], scene["render"]
     scene["meshes"] = [{**mesh, "obj": "../../" + mesh["obj"]} for mesh in BOX["meshes"]]
     (FOLDER / f"{name}.json").write_text(json.dumps(scene, indent=1) + "\n")
@@ -50,19 +49,7 @@ def mitsuba_scene(name, view):
     return mi.load_dict(scene)
 
 
-SUITE = Suite(FOLDER, list(CASES), mitsuba_scene)
-
-
-def write(variant):
-    mi.set_variant(variant)
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    for name, (keys, _) in CASES.items():
-        write_scene(name, keys)
-        SUITE.write_estimate(name)
-
+SUITE = Suite(FOLDER, list(CASES), mitsuba_scene, write_scene)
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--write":
-        write(*(sys.argv[2:] or ["scalar_rgb"]))
-    else:
-        sys.exit(0 if SUITE.check_all(sys.argv[1]) else 1)
+    SUITE.main()

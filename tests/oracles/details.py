@@ -7,7 +7,6 @@ details.py --write [VARIANT [NAME...]] makes the folder, or these scenes of it; 
 """
 import json
 import math
-import sys
 
 import mitsuba as mi
 import numpy as np
@@ -198,21 +197,12 @@ def mitsuba_scene(name, view):
                       emitter={"type": "area", "radiance": rgb(LAMP)})})
 
 
-SUITE = Suite(FOLDER, list(CASES), mitsuba_scene)
-
-
-def write(variant="scalar_rgb", *names):
-    mi.set_variant(variant)
-    FOLDER.mkdir(parents=True, exist_ok=True)
+def write_common():
     (FOLDER / "card.obj").write_text(CARD)
     write_images()
-    for name in names or CASES:
-        write_scene(name)
-        SUITE.write_estimate(name)
 
+
+SUITE = Suite(FOLDER, list(CASES), mitsuba_scene, write_scene, write_common)
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--write":
-        write(*sys.argv[2:])
-    else:
-        sys.exit(0 if SUITE.check_all(sys.argv[1]) else 1)
+    SUITE.main()

@@ -6,7 +6,6 @@ stored there and what castray renders, by z-test. lights.py --write [VARIANT [NA
 it; castray's tests read it.
 """
 import json
-import sys
 
 import details
 import mitsuba as mi
@@ -141,20 +140,11 @@ def mitsuba_scene(name, view):
         **cubes(name), **CASES[name][1]()})
 
 
-SUITE = Suite(FOLDER, list(CASES), mitsuba_scene)
-
-
-def write(variant="scalar_rgb", *names):
-    mi.set_variant(variant)
-    FOLDER.mkdir(parents=True, exist_ok=True)
+def write_environment():
     mi.Bitmap(environment()).write(str(FOLDER / "environment.exr"))
-    for name in names or CASES:
-        write_scene(name)
-        SUITE.write_estimate(name)
 
+
+SUITE = Suite(FOLDER, list(CASES), mitsuba_scene, write_scene, write_environment)
 
 if __name__ == "__main__":
-    if sys.argv[1] == "--write":
-        write(*sys.argv[2:])
-    else:
-        sys.exit(0 if SUITE.check_all(sys.argv[1]) else 1)
+    SUITE.main()

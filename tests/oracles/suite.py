@@ -3,6 +3,7 @@ import dataclasses
 import math
 import pathlib
 import subprocess
+import sys
 import tempfile
 import typing
 
@@ -37,11 +38,13 @@ class Estimate:
 
 @dataclasses.dataclass
 class Suite:
-    """A folder of scene files, and the function that makes Mitsuba's scene of a name and a View."""
+    """A folder of scene files, the function that makes Mitsuba's scene of a name and a View, and those that make the files."""
 
     folder: pathlib.Path
     names: list
     mitsuba_scene: typing.Callable
+    write_scene: typing.Callable  # the scene file of a name
+    write_common: typing.Callable = lambda: None  # what several of them use
 
     def by_mitsuba(self, name, spp, seeds, first_seed):
         scene = self.mitsuba_scene(name, View())
@@ -66,6 +69,21 @@ class Suite:
         estimate = self.by_mitsuba(name, spp=256, seeds=32, first_seed=1000)
         write_pfm(self.folder / f"{name}_mean.pfm", estimate.mean)
         write_pfm(self.folder / f"{name}_variance.pfm", estimate.variance)
+
+    def main(self):
+        """CASTRAY, or --write [VARIANT [NAME...]]."""
+        if sys.argv[1] == "--write":
+            self.write(*sys.argv[2:])
+        else:
+            sys.exit(0 if self.check_all(sys.argv[1]) else 1)
+
+    def write(self, variant="scalar_rgb", *names):
+        mi.set_variant(variant)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.write_common()
+        for name in names or self.names:
+            self.write_scene(name)
+            self.write_estimate(name)
 
     def check_all(self, castray):
         mi.set_variant("scalar_rgb")
