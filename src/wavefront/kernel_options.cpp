@@ -1,0 +1,37 @@
+#include "wavefront/kernel_options.h"
+
+#include <limits>
+
+#include "castray/differences.h"
+#include "core/sequences.h"
+
+namespace castray {
+
+bool traces_light_paths(const RenderOptions& options, const Plan& plan) {
+  // splats are spread over their pixels, and no sample's part to clamp
+  return plan.light_paths && options.jitter && !options.clamp_indirect;
+}
+
+KernelOptions kernel_options(const RenderOptions& options, const Plan& plan, bool differences) {
+  KernelOptions k{};
+  k.sobol = options.sampler == SamplerKind::sobol;
+  k.jitter = options.jitter;
+  k.fixed_roulette = options.rr.has_value();
+  k.survival = static_cast<float>(options.rr.value_or(1.0));
+  k.max_depth = static_cast<std::uint32_t>(options.max_depth);
+  k.most_indirect =
+      static_cast<float>(options.clamp_indirect.value_or(std::numeric_limits<double>::infinity()));
+  k.mis = plan.mis;
+  k.light_paths = traces_light_paths(options, plan);
+  k.suffixes = plan.suffixes;
+  k.light_points = plan.light_points;
+  k.environment_points = plan.environment_points;
+  // from then on so many grids lie over each other that none can be told
+  constexpr std::uint64_t few_samples = 4;
+  k.ragged = plan.suffixes > 0 ? few_samples / (differences ? DifferenceSums::halves : 1) : 0;
+  k.seed =
+      hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
+  return k;
+}
+
+}  // namespace castray
