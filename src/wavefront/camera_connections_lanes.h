@@ -1,7 +1,7 @@
 #pragma once
 
-#include "materials/stretch_lanes.h"
 #include "cameras/camera_lanes.h"
+#include "materials/stretch_lanes.h"
 #include "wavefront/light_normals_lanes.h"
 #include "wavefront/trace_lanes.h"
 

@@ -3,16 +3,11 @@
 #include <algorithm>
 
 #include "core/sequences.h"
+#include "wavefront/pilot_light_paths.h"
 
 namespace castray {
 
 namespace {
-
-std::size_t batches_of(const Pilot& pilot) {
-  constexpr std::size_t fewest = 16, most = 128;
-  const std::size_t pixels = static_cast<std::size_t>(pilot.width) * static_cast<std::size_t>(pilot.height);
-  return std::clamp(pixels / batch_size, fewest, most);
-}
 
 void add(std::vector<UsefulEmission>& samples, const FocusedEmission& found) {
   for (int i = 0; i < found.count; ++i) {
@@ -27,14 +22,13 @@ std::vector<UsefulEmission> useful_emission(const Pilot& pilot, KernelOptions op
                                             const LightPathsJob& light_paths_job) {
   options.seed = hash_combine(0x9170fu, 1u);
   std::vector<std::vector<UsefulEmission>> batches(batches_of(pilot));
-#pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
-  for (std::size_t i = 0; i < batches.size(); ++i) {
+  for_each_batch(pilot, batches.size(), [&](std::size_t i, LightPathJob job) {
     const EmissionSink sink{&batches[i], [](void* self, const FocusedEmission& found) {
                               add(*static_cast<std::vector<UsefulEmission>*>(self), found);
                             }};
-    const LightPathJob job{0, i * batch_size, batch_size, pilot.width, pilot.height, &sink};
+    job.emission = &sink;
     light_paths_job(options, job, {});
-  }
+  });
   std::vector<UsefulEmission> samples;  // in the batches' order, whatever the threads
   for (const auto& batch : batches) samples.insert(samples.end(), batch.begin(), batch.end());
   return samples;

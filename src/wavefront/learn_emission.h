@@ -13,9 +13,8 @@ namespace castray {
 std::vector<UsefulEmission> useful_emission(const Pilot& pilot, KernelOptions options,
                                             const LightPathsJob& light_paths_job);
 
-/// For each pixel, if as many are to be useful as of one without a guide; 1 if a guide is not worth it.
-/// `unguided`, `guided`: how many of a
-/// number of light paths are.
+/// How many light paths a pixel needs for as many to be useful as of one without a guide; 1 if a guide is not
+/// worth it. `unguided`, `guided`: how many of a number of light paths are useful.
 double light_paths_enough(std::size_t unguided, std::size_t guided);
 
 }  // namespace castray

@@ -8,6 +8,7 @@
 #include "castray/vec.h"
 #include "core/sequences.h"
 #include "core/warp.h"
+#include "wavefront/pilot_light_paths.h"
 
 namespace castray {
 
@@ -31,25 +32,16 @@ struct SplatSums {
   }
 };
 
-/// Of light paths: one for every second pixel, within bounds.
-std::size_t batches_of(const Pilot& pilot) {
-  constexpr std::size_t fewest = 8, most = 64;
-  const std::size_t pixels = static_cast<std::size_t>(pilot.width) * static_cast<std::size_t>(pilot.height);
-  return std::clamp(pixels / (2 * batch_size), fewest, most);
-}
-
 /// Means over the light paths of a pilot; rays, and what light paths make of a sample, of as many as an image
 /// has of them.
 SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const LightPathsJob& light_paths_job) {
   options.seed = hash_combine(0x9170fu, 0u);
-  std::vector<SplatSums> batches(batches_of(pilot));
-#pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
-  for (std::size_t i = 0; i < batches.size(); ++i) {
+  std::vector<SplatSums> batches(batches_of(pilot) / 2);
+  for_each_batch(pilot, batches.size(), [&](std::size_t i, const LightPathJob& job) {
     const SplatSink sink{
         &batches[i], [](void* self, const Splats& splats) { static_cast<SplatSums*>(self)->add(splats); }};
-    const LightPathJob job{0, i * batch_size, batch_size, pilot.width, pilot.height};
     batches[i].rays = static_cast<double>(light_paths_job(options, job, sink));
-  }
+  });
   SplatSums means;  // in the batches' order, whatever the threads
   const double share = 1.0 / static_cast<double>(batches.size() * batch_size);
   for (const SplatSums& batch : batches) {
