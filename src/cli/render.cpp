@@ -102,7 +102,7 @@ int render_scene(const RenderCommand& command, const CommonFlags& common) {
   try {
     return render_loaded(command, common, scene, begin);
   } catch (const InputError& error) {
-    throw placed_error(error, scene, [&](std::string_view flag) { return command.is_given(flag); });
+    throw placed_error(error, scene, [&](std::string_view flag) { return is_given(flag, command.given); });
   }
 }
 

@@ -45,7 +45,7 @@ Scene load_told(const std::string& file, const std::vector<GivenFlag>& given, co
   return load_scene(file);
 }
 
-bool RenderCommand::is_given(std::string_view flag) const {
+bool is_given(std::string_view flag, const std::vector<GivenFlag>& given) {
   return std::any_of(given.begin(), given.end(),
                      [&](const GivenFlag& one) { return one.flag->name == flag; });
 }
@@ -73,7 +73,7 @@ RenderRequest request_of(const RenderCommand& command, const CommonFlags& common
   RenderRequest request;
   apply_defaults(request, scene);
   for (const GivenFlag& given : command.given) given.flag->set(request, given.flag->name, given.value);
-  const bool spp_limits = command.is_given("spp") || request.options.samples;
+  const bool spp_limits = is_given("spp", command.given) || request.options.samples;
   if (request.options.target_error && !spp_limits) request.options.spp = most_samples_to_target;
   request.until_time_limit = request.options.time_limit && !request.options.target_error && !spp_limits;
   if (request.until_time_limit) request.options.spp = most_samples;

@@ -19,8 +19,6 @@ struct RenderCommand {
   std::string scene;
   std::vector<std::string> outputs;
   std::vector<GivenFlag> given;
-
-  bool is_given(std::string_view flag) const;
 };
 
 /// Declares one flag; what the command line says of it is added to `given`, which outlives the parsing.
@@ -34,6 +32,9 @@ Scene load_told(const std::string& file, const std::vector<GivenFlag>& given, co
 
 /// Throws InputError where a value cannot be, also one of the scene's own defaults.
 RenderRequest request_of(const RenderCommand& command, const CommonFlags& common, const Scene& scene);
+
+/// Whether one of the flags has this name.
+bool is_given(std::string_view flag, const std::vector<GivenFlag>& given);
 
 /// The same error, at its place in the scene file where it is of one of the scene's own defaults, which no
 /// given flag replaces.

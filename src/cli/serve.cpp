@@ -55,16 +55,12 @@ struct Serve {
     return text;
   }
 
-  bool is_given(std::string_view flag) const {
-    return std::ranges::any_of(given, [&](const GivenFlag& one) { return one.flag->name == flag; });
-  }
-
   int run(const CommonFlags& common) const {
     Scene scene = load_told(file, given, common);
     try {
       return show(scene, common);
     } catch (const InputError& error) {
-      throw placed_error(error, scene, [&](std::string_view flag) { return is_given(flag); });
+      throw placed_error(error, scene, [&](std::string_view flag) { return is_given(flag, given); });
     }
   }
 

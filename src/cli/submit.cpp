@@ -42,7 +42,7 @@ struct Submit {
     Submission& s = submission;
     for (const char* flag :
          {"part", "checkpoint", "resume", "stats", "progress", "preview-every", "preview", "tev", "samples"})
-      if (render.is_given(flag))
+      if (is_given(flag, render.given))
         throw InputError(fmt::format("--{}: cannot go with submit, which decides it", flag));
     const Scene scene = load_scene(render.scene);
     const RenderRequest request = request_of(render, common, scene);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/triangle_corners.h"
 #include "geometry/bounds.h"
 #include "materials/surface_values.h"
 
@@ -21,27 +22,17 @@ bool all_diffuse(const Scene& scene) {
   return true;
 }
 
-Vec3d corner(const Scene& scene, std::size_t triangle, std::size_t k) {
-  return Vec3d(scene.positions[scene.triangles[triangle][k]]);
-}
-
-/// Across the triangle, its counter-clockwise side's; twice as long as its area.
-Vec3d twice_area(const Scene& scene, std::size_t triangle) {
-  const Vec3d v0 = corner(scene, triangle, 0);
-  return cross(corner(scene, triangle, 1) - v0, corner(scene, triangle, 2) - v0);
-}
-
 /// Whether the light shines on any corner of the triangle, walls between them left aside.
-bool shines_on(const Scene& scene, std::uint32_t light, std::size_t triangle) {
+bool shines_on(const Scene& scene, std::uint32_t light, std::uint32_t triangle) {
   constexpr double in_plane = 0x1p-20;  // scenes are scaled to about 1
-  const Vec3d normal = normalize(twice_area(scene, light));
+  const TriangleCorners lamp = corners_of(scene, light);
+  const Vec3d normal = normalize(lamp.twice_area());
   const std::uint16_t material = scene.triangle_material[light];
   const bool front = scene.emits_on(material, true), back = scene.emits_on(material, false);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double above = dot(corner(scene, triangle, k) - corner(scene, light, 0), normal);
-    if ((front && above > in_plane) || (back && above < -in_plane)) return true;
-  }
-  return false;
+  return std::ranges::any_of(corners_of(scene, triangle).all(), [&](const Vec3d& corner) {
+    const double above = dot(corner - lamp.a, normal);
+    return (front && above > in_plane) || (back && above < -in_plane);
+  });
 }
 
 /// Of the distance between two boxes.
@@ -71,7 +62,7 @@ bool bsdf_may_be_denser(const Scene& scene, double bsdf_samples) {
   for (const std::uint32_t light : scene.lights)
     for (const std::uint16_t side : scene.emitting_sides(scene.triangle_material[light])) {
       const int directions = scene.materials[side].two_sided_emission ? 2 : 1;
-      power += luminance(emission[side]) * directions * length(twice_area(scene, light)) / 2;
+      power += luminance(emission[side]) * directions * length(corners_of(scene, light).twice_area()) / 2;
     }
   return std::ranges::any_of(scene.lights, [&](std::uint32_t light) {
     double density = std::numeric_limits<double>::infinity();

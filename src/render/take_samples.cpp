@@ -67,15 +67,13 @@ class TargetRun {
       BlockNoise noise(pixels, pilot);
       noise.set_fall(shorter ? noise.fall_from(*shorter) : first_fall_);
       const SampleMap plan = noise.plan(target_, 2 * fewest(), std::min(job_.options.spp, most_of_image));
-      if (reconstruct_if_it_pays(plan)) {
-        shorter.reset();
-      } else {
-        planned_ = stats_.paths + plan.total();
-        if (stats_.paths * share_needed >= plan.total() || round > last_round) return image(pixels, plan);
-        shorter = noise;
-      }
+      planned_ = stats_.paths + plan.total();
+      const bool begins_anew = reconstruct_if_it_pays(plan);
+      const bool is_long_enough = stats_.paths * share_needed >= plan.total() || round > last_round;
+      if (is_long_enough && !begins_anew) return image(pixels, plan);
+      shorter = begins_anew ? std::nullopt : std::optional(noise);
       pilot = longer_pilot(pilot, plan);
-      planned_ = stats_.paths + plan.total() + 2 * pilot.total();
+      planned_ += 2 * pilot.total();
       whole = render_pilot(pilot, round);
     }
   }
