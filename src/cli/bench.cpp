@@ -4,18 +4,21 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <set>
 
 #include "bench/report.h"
 #include "castray/error.h"
 #include "castray/image.h"
 #include "cli/bench_meter.h"
 #include "cli/commands.h"
+#include "cli/configuration.h"
 #include "cli/display_flags.h"
 #include "cli/peer.h"
 #include "cli/process.h"
 #include "cli/scene_bench.h"
 #include "cli/shell_word.h"
 #include "core/files.h"
+#include "core/text.h"
 #include "core/threads.h"
 
 namespace castray::cli {
@@ -40,6 +43,18 @@ std::string command_line() {
   return line;
 }
 
+/// Tables and pictures tell contenders apart by name.
+void check_names(const BenchFlags& flags) {
+  std::set<std::string> names;
+  const auto check = [&](const char* flag, const std::string& name) {
+    if (!names.insert(name).second)
+      throw InputError(fmt::format("{} '{}': another contender has that name; give it one of its own", flag,
+                                   printable(name)));
+  };
+  for (const std::string& text : flags.configurations) check("--config", split_configuration(text).name);
+  for (const std::string& text : flags.peers) check("--peer", Peer::parse(text).name);
+}
+
 void check_flags(const BenchFlags& flags) {
   const auto check_count = [](const char* flag, std::uint64_t count) {
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();  // below 0, CLI11 wraps round
@@ -51,7 +66,7 @@ void check_flags(const BenchFlags& flags) {
   for (const std::uint64_t spp : flags.spp) check_count("--spp", spp);
   for (const double seconds : flags.seconds)
     if (!(seconds > 0)) throw InputError("--seconds: each budget must be above 0");
-  for (const std::string& peer : flags.peers) Peer::parse(peer);
+  check_names(flags);
   if (flags.equal_time && !(*flags.equal_time > 0)) throw InputError("--equal-time: must be above 0");
   check_distinct({flags.json, flags.csv, flags.html, flags.svg});
   for (const std::string& file : {flags.json, flags.csv, flags.html, flags.svg})

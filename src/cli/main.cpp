@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cli/command_line.h"
+#include "cli/stack_size.h"
 #include "cli/standard_streams.h"
 #include "core/text.h"
 
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
   std::set_terminate(terminate);
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond `ulimit -f` fails as on a full disk
   try {
+    castray::cli::check_stack_size();
     const int code = castray::cli::parse_command_line(argc, argv)();
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) return fail_output();
     return code;

@@ -170,6 +170,8 @@ TEST_CASE("what bench cannot use gets one line and exit code 2") {
   refused({"--config", "a=--samplr sobol"}, "sampler");
   refused({"--config", "a=--spp 4"}, "--spp");
   refused({"--config", "flags without a name"}, "NAME=FLAGS");
+  refused({"--config", config, "--config", "a="}, "--config 'a': another contender has that name");
+  refused({"--config", config, "--peer", "a=true {scene} {spp} {out}"}, "--peer 'a': another");
   const std::string endless = "4000000000";  // what can be known is told before the references
   refused({"--config", "a=--isa odd", "--reference-spp", endless}, "--config a: --isa odd: unknown");
   refused({"--config", "a=--isa avx2 --epsilon 1e-5", "--reference-spp", endless}, "--config a: --isa avx2");

@@ -222,6 +222,11 @@ const std::vector<Case> cases = {
      [](const Folder& f) { fs::create_directory(f.folder / "d.png"); },
      {"render", "s.json", "-q", "-o", "d.png"},
      "d.png: is a folder"},
+    {"stacks too small for a render",
+     nothing,
+     {"render", "s.json", "-q", "-o", "x.png"},
+     "stacks of 16 KiB are too small; set `ulimit -s` and OMP_STACKSIZE",
+     {.variables = {{"OMP_STACKSIZE", "16k"}}}},
     {"a target in a file", nothing, {"render", "s.json", "-q", "-o", "s.json/x.png"}, "s.json/x.png: "},
 };
 

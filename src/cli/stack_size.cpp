@@ -1,0 +1,37 @@
+#include "cli/stack_size.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "castray/error.h"
+
+namespace castray::cli {
+
+namespace {
+
+std::size_t own_stack_size() {
+  pthread_attr_t attributes;
+  std::size_t size = std::numeric_limits<std::size_t>::max();
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return size;
+  pthread_attr_getstacksize(&attributes, &size);
+  pthread_attr_destroy(&attributes);
+  return size;
+}
+
+}  // namespace
+
+void check_stack_size() {
+  constexpr std::size_t least = 256 * 1024;  // twice what the deepest scenes were seen to take
+  std::size_t size = std::numeric_limits<std::size_t>::max();
+#pragma omp parallel num_threads(2) reduction(min : size)
+  size = std::min(size, own_stack_size());
+  if (size < least)
+    throw InputError(fmt::format(
+        "stacks of {} KiB are too small; set `ulimit -s` and OMP_STACKSIZE, if it is set, to {}K at least",
+        size / 1024, least / 1024));
+}
+
+}  // namespace castray::cli
