@@ -69,6 +69,14 @@ CASTRAY_CONTRACT U owen_hash(U v, U seed) {
   return v ^ (v * 0x53a22864u);
 }
 
+// Partial coverage.
+
+/// What decides, against the coverage there, whether a point of a triangle is there in a world.
+CASTRAY_CONTRACT float presence_number(uint32_t world, uint32_t triangle, float b1, float b2) {
+  const uint32_t on_triangle = hash_combine(hash_combine(world, triangle), __builtin_bit_cast(uint32_t, b1));
+  return static_cast<float>(hash_combine(on_triangle, __builtin_bit_cast(uint32_t, b2)) >> 8) * 0x1p-24f;
+}
+
 // Russian roulette.
 
 /// By throughput it starts at this vertex; earlier it saves less time than it adds noise.

@@ -41,7 +41,7 @@ CASTRAY_INLINE uint32_t mixed_signs8(F8 u, F8 v, F8 w) {
   return both_less8<false>(min8(u, min8(v, w)), zero, zero, max8(u, max8(v, w)));
 }
 
-/// Tests the packets of a leaf; keeps the nearest hit of the ray that counts. Returns whether there was any.
+/// Tests a packet of a leaf; keeps the nearest hit of the ray that counts. Returns whether there was any.
 template <class Counts>
 CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, const Counts& counts, RayGroup& group,
                                      uint32_t r, float& hit_t, uint32_t& hit_triangle, float& b1, float& b2) {
@@ -70,7 +70,7 @@ CASTRAY_INLINE bool intersect_packet(const TrianglePacket& packet, const Counts&
     const int l = __builtin_ctz(hits);
     if (t[l] < hit_t || (t[l] == hit_t && packet.triangle[l] < hit_triangle)) {
       const float at1 = v[l] / det[l], at2 = w[l] / det[l];
-      if (!counts(packet.triangle[l], at1, at2)) continue;
+      if (!counts(r, packet.triangle[l], at1, at2)) continue;
       group.nearest[r] = hit_t = t[l];
       hit_triangle = packet.triangle[l];
       b1 = at1;

@@ -36,8 +36,9 @@ struct FlatList {
 /// ordinary one with holes.
 struct PartialTriangles {
   const uint32_t* triangles;  ///< a bit for each, the lowest first; null: all are wholly there
-  bool (*is_there)(const void* self, uint32_t world, uint32_t triangle, float b1, float b2);
+  float (*coverage)(const void* self, uint32_t triangle, float b1, float b2);
   const void* self;
+  bool met_once;  ///< a ray meets each of them once: the tree has none twice
 };
 
 /// All of a scene as a tree of triangles.

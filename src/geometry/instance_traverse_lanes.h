@@ -9,26 +9,15 @@ namespace castray::CASTRAY_ISA {
 /// Every object lies in the box of these bounds.
 inline constexpr WideBvhView unit_box{nullptr, 0, 0, 0, {-1, -1, -1}, {1, 1, 1}};
 
-/// What of partial triangles counts in an object of an instance: instances have worlds of their own.
-struct AllThereInObject {
-  CASTRAY_INLINE AllThereInObject(const AllThere&, uint32_t, uint32_t) {}
-  CASTRAY_INLINE bool operator()(uint32_t, float, float) const { return true; }
-};
-struct PartlyThereInObject {
-  PartlyThere there;
-  uint32_t first;
-  CASTRAY_INLINE PartlyThereInObject(const PartlyThere& in_scene, uint32_t instance, uint32_t first_triangle)
-      : there{in_scene.partial, hash_combine(in_scene.world, instance)}, first(first_triangle) {}
-  CASTRAY_INLINE bool operator()(uint32_t triangle, float b1, float b2) const {
-    return there(first + triangle, b1, b2);
+/// What of an object's triangles, numbered from `first` on in the scene, counts for a ray.
+template <class Counts>
+struct CountsInObject {
+  Counts counts;
+  uint32_t ray, first;
+  CASTRAY_INLINE bool operator()(uint32_t /*entry*/, uint32_t triangle, float b1, float b2) const {
+    return counts(ray, first + triangle, b1, b2);
   }
 };
-CASTRAY_INLINE AllThereInObject in_object(const AllThere& all, uint32_t instance, uint32_t first) {
-  return {all, instance, first};
-}
-CASTRAY_INLINE PartlyThereInObject in_object(const PartlyThere& there, uint32_t instance, uint32_t first) {
-  return {there, instance, first};
-}
 
 CASTRAY_INLINE void copy_ray(const RayGroup& from, uint32_t f, RayGroup& to, uint32_t t) {
   for (int i = 0; i < 3; ++i) {
@@ -177,7 +166,7 @@ class InstanceTraversal {
     // of equally near hits, one on a lower instance stays, and one on a higher is replaced
     uint32_t& on = out_.instance[r];
     uint32_t triangle = on == instance ? out_.triangle[r] - first : on < instance ? 0 : no_hit;
-    const auto counts = in_object(counts_, instance, first);
+    const CountsInObject<Counts> counts{counts_.in(instance), first_ + r, first};
     const TrianglePacket* packet = (const TrianglePacket*)address(s);
     bool found = false;
     for (uint32_t left = child_[s] % max_leaf_packets + 1; left; --left)

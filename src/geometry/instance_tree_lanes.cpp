@@ -57,11 +57,16 @@ CASTRAY_INLINE void find_occluded(const InstanceTree& tree, const Counts& counts
 }  // namespace
 
 void instances_closest(const InstanceTree& tree, const PartlyThere* there, const RayBatch& rays) {
-  there ? find_closest(tree, *there, rays) : find_closest(tree, AllThere{}, rays);
+  if (!there) return find_closest(tree, AllThere{}, rays);
+  if (rays.presence.key) return find_closest(tree, ThereForRays{there->partial, rays.presence}, rays);
+  find_closest(tree, *there, rays);
 }
 
 void instances_occluded(const InstanceTree& tree, const PartlyThere* there, const ShadowBatch& rays) {
-  there ? find_occluded(tree, *there, rays) : find_occluded(tree, AllThere{}, rays);
+  if (!there) return find_occluded(tree, AllThere{}, rays);
+  if (!rays.kept) return find_occluded(tree, *there, rays);
+  for (uint32_t i = 0; i < rays.count; ++i) rays.kept[i] = 1;
+  find_occluded(tree, Thinning{there->partial, rays.kept}, rays);
 }
 
 }  // namespace castray::CASTRAY_ISA

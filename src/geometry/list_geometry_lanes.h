@@ -28,6 +28,9 @@ class ListGeometry {
     facets_occluded(list_.blockers, segment_slack, rays);
   }
 
+  /// Whether they tell what partial triangles leave of their light (ShadowBatch::kept).
+  CASTRAY_INLINE bool thins() const { return false; }
+
   /// How what tables hold of a hit's triangle is turned to scene space.
   CASTRAY_INLINE InPlace placement(const SurfaceHit& /*hit*/) const { return {}; }
 

@@ -1,27 +1,83 @@
 #pragma once
 
+#include "core/contract.h"
 #include "geometry/geometry_records.h"
-#include "simd/isa_lanes.h"
+#include "geometry/ray_batches.h"
+#include "simd/random_lanes.h"
 
-// Which of the hits that a traversal finds count.
+// Which of the hits that a traversal finds count. It asks by `counts(ray, triangle, b1, b2)`. `from(i)` is
+// the same for the rays from number i on, `in(instance)` that for the triangles of an instance.
 
 namespace castray::CASTRAY_ISA {
 
 /// All of them.
 struct AllThere {
-  CASTRAY_INLINE bool operator()(uint32_t /*triangle*/, float /*b1*/, float /*b2*/) const { return true; }
+  CASTRAY_INLINE AllThere from(uint32_t /*ray*/) const { return *this; }
+  CASTRAY_INLINE AllThere in(uint32_t /*instance*/) const { return *this; }
+  CASTRAY_INLINE bool operator()(uint32_t /*ray*/, uint32_t /*triangle*/, float /*b1*/, float /*b2*/) const {
+    return true;
+  }
 };
+
+CASTRAY_INLINE bool is_partial(const PartialTriangles& partial, uint32_t triangle) {
+  return partial.triangles[triangle / 32] >> (triangle % 32) & 1;
+}
+
+/// 1 where the triangle is not partial.
+CASTRAY_INLINE float coverage_at(const PartialTriangles& partial, uint32_t triangle, float b1, float b2) {
+  return is_partial(partial, triangle) ? partial.coverage(partial.self, triangle, b1, b2) : 1.f;
+}
 
 /// Those on what of the triangles is there in a world.
 struct PartlyThere {
   const PartialTriangles& partial;
   uint32_t world;
 
-  CASTRAY_INLINE bool operator()(uint32_t triangle, float b1, float b2) const {
-    return !is_partial(triangle) || partial.is_there(partial.self, world, triangle, b1, b2);
+  CASTRAY_INLINE PartlyThere from(uint32_t /*ray*/) const { return *this; }
+  CASTRAY_INLINE PartlyThere in(uint32_t instance) const { return {partial, hash_combine(world, instance)}; }
+  CASTRAY_INLINE bool operator()(uint32_t /*ray*/, uint32_t triangle, float b1, float b2) const {
+    const float coverage = coverage_at(partial, triangle, b1, b2);
+    return coverage >= 1 || (coverage > 0 && presence_number(world, triangle, b1, b2) < coverage);
   }
-  CASTRAY_INLINE bool is_partial(uint32_t triangle) const {
-    return partial.triangles[triangle / 32] >> (triangle % 32) & 1;
+};
+
+/// The same, but for each ray by a number of its own sequence. So over the samples of a pixel a triangle is
+/// there as often as it should be, almost exactly. Different triangles, and the path beyond, have independent
+/// numbers.
+struct ThereForRays {
+  const PartialTriangles& partial;
+  PresenceNumbers numbers;
+  uint32_t block = 0x9e5e4ceu;
+
+  CASTRAY_INLINE ThereForRays from(uint32_t ray) const {
+    return {partial, {numbers.key + ray, numbers.index + ray, numbers.sobol}, block};
+  }
+  CASTRAY_INLINE ThereForRays in(uint32_t instance) const {
+    return {partial, numbers, hash_combine(block, instance)};
+  }
+  CASTRAY_INLINE bool operator()(uint32_t ray, uint32_t triangle, float b1, float b2) const {
+    const float coverage = coverage_at(partial, triangle, b1, b2);
+    return coverage >= 1 || (coverage > 0 && number(ray, triangle) < coverage);
+  }
+
+ private:
+  CASTRAY_INLINE float number(uint32_t ray, uint32_t triangle) const {
+    const Uint key(hash_combine(numbers.key[ray], block));
+    return lane(draw<1>(numbers.sobol, {key, Uint(numbers.index[ray])}, triangle).u[0], 0);
+  }
+};
+
+/// Those where nothing is left of a ray's light. `kept` starts as 1, and loses at each crossing the share
+/// that is there.
+struct Thinning {
+  const PartialTriangles& partial;
+  float* kept;
+
+  CASTRAY_INLINE Thinning from(uint32_t ray) const { return {partial, kept + ray}; }
+  CASTRAY_INLINE Thinning in(uint32_t /*instance*/) const { return *this; }
+  CASTRAY_INLINE bool operator()(uint32_t ray, uint32_t triangle, float b1, float b2) const {
+    kept[ray] *= 1 - coverage_at(partial, triangle, b1, b2);
+    return !(kept[ray] > 0);
   }
 };
 

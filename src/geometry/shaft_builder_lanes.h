@@ -13,7 +13,7 @@ CASTRAY_INLINE bool has_partial(const AllThere&, const TrianglePacket&, uint32_t
 /// Triangles of the packet are numbered from `first` on.
 CASTRAY_INLINE bool has_partial(const PartlyThere& there, const TrianglePacket& packet, uint32_t first) {
   bool any = false;
-  for (const uint32_t triangle : packet.triangle) any |= there.is_partial(first + triangle);
+  for (const uint32_t triangle : packet.triangle) any |= is_partial(there.partial, first + triangle);
   return any;
 }
 

@@ -35,7 +35,7 @@ CASTRAY_INLINE void find_closest(const WideBvhView& bvh, const Counts& counts, c
   RayGroup group;
   for (uint32_t first = 0; first < rays.count; first += group_size) {
     const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
-    trace<false>(bvh, counts, rays, first, count, group, stack_t, stack_child,
+    trace<false>(bvh, counts.from(first), rays, first, count, group, stack_t, stack_child,
                  {rays.t + first, rays.triangle + first, rays.b1 + first, rays.b2 + first});
   }
 }
@@ -50,7 +50,8 @@ CASTRAY_INLINE void find_occluded(const WideBvhView& bvh, const Counts& counts, 
   uint32_t triangle[group_size];
   for (uint32_t first = 0; first < rays.count; first += group_size) {
     const uint32_t left = rays.count - first, count = left < group_size ? left : group_size;
-    trace<true>(bvh, counts, rays, first, count, group, stack_t, stack_child, {t, triangle, b1, b2});
+    trace<true>(bvh, counts.from(first), rays, first, count, group, stack_t, stack_child,
+                {t, triangle, b1, b2});
     for (uint32_t i = 0; i < count; ++i) rays.occluded[first + i] = triangle[i] != no_hit;
   }
 }
@@ -60,13 +61,16 @@ CASTRAY_INLINE void find_occluded(const WideBvhView& bvh, const Counts& counts, 
 void bvh_closest(const WideBvhView& bvh, const RayBatch& rays) { find_closest(bvh, AllThere{}, rays); }
 
 void bvh_closest(const WideBvhView& bvh, const PartlyThere& there, const RayBatch& rays) {
+  if (rays.presence.key) return find_closest(bvh, ThereForRays{there.partial, rays.presence}, rays);
   find_closest(bvh, there, rays);
 }
 
 void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) { find_occluded(bvh, AllThere{}, rays); }
 
 void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const ShadowBatch& rays) {
-  find_occluded(bvh, there, rays);
+  if (!rays.kept) return find_occluded(bvh, there, rays);
+  for (uint32_t i = 0; i < rays.count; ++i) rays.kept[i] = 1;
+  find_occluded(bvh, Thinning{there.partial, rays.kept}, rays);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -11,7 +11,7 @@ namespace castray::CASTRAY_ISA {
 void bvh_closest(const WideBvhView& bvh, const RayBatch& rays);
 void bvh_closest(const WideBvhView& bvh, const PartlyThere& there, const RayBatch& rays);
 
-/// Finds whether each ray hits anything that is there.
+/// Finds whether each ray hits anything that is there, or what of its light partial triangles leave.
 void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays);
 void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const ShadowBatch& rays);
 

@@ -1,7 +1,6 @@
 #include "materials/coverage.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "core/contract.h"
 #include "materials/surface_values.h"
@@ -20,9 +19,11 @@ bool Coverage::is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2)
   const T coverage = coverage_at(scene_, TrianglePlace<T>{triangle, b1, b2});
   if (coverage >= 1) return true;
   if (!(coverage > 0)) return false;
-  std::uint32_t key = hash_combine(world, triangle);
-  for (const T b : {b1, b2}) key = hash_combine(key, std::bit_cast<std::uint32_t>(static_cast<float>(b)));
-  return static_cast<T>(key >> 8) * T(0x1p-24) < coverage;
+  return presence_number(world, triangle, static_cast<float>(b1), static_cast<float>(b2)) < coverage;
+}
+
+float Coverage::share_there(std::uint32_t triangle, float b1, float b2) const {
+  return coverage_at(scene_, TrianglePlace<float>{triangle, b1, b2});
 }
 
 template <class T>

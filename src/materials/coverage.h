@@ -30,6 +30,9 @@ class Coverage {
   template <class T>
   bool is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2) const;
 
+  /// The share of the surface that is there at that point.
+  float share_there(std::uint32_t triangle, float b1, float b2) const;
+
   /// Which hits count for the path of this sample of the pixel with this key: each path has a world of its
   /// own, and in it each instance. The filter must not outlive this.
   template <class T>

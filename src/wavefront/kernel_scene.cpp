@@ -35,12 +35,11 @@ bool has_emission_images(const Scene& scene) {
   return !scene.triangle_uvs.empty() && std::ranges::any_of(scene.materials, &Material::has_emission_map);
 }
 
-PartialTriangles partial_triangles(const Coverage& coverage) {
-  const auto is_there = [](const void* self, std::uint32_t world, std::uint32_t triangle, float b1,
-                           float b2) {
-    return static_cast<const Coverage*>(self)->is_there(world, triangle, b1, b2);
+PartialTriangles partial_triangles(const Coverage& coverage, BuildQuality build) {
+  const auto share_there = [](const void* self, std::uint32_t triangle, float b1, float b2) {
+    return static_cast<const Coverage*>(self)->share_there(triangle, b1, b2);
   };
-  return {coverage.partial_triangles(), is_there, &coverage};
+  return {coverage.partial_triangles(), share_there, &coverage, build != BuildQuality::best};
 }
 
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {
@@ -78,7 +77,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.lights = lights.list();
     view.lights.may_be_covered = may_be_covered(scene, emitting);
     view.geometry.tree.triangles = triangle_table(scene, material_words);
-    view.geometry.tree.partial = partial_triangles(coverage);
+    view.geometry.tree.partial = partial_triangles(coverage, plan.build);
   }
   if (plan.light_paths) mirrored = mirrored_lights(scene, lights.lights());
   view.lights.mirrored = {mirrored.data(), static_cast<int>(mirrored.size())};

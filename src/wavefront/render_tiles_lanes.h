@@ -33,7 +33,7 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   if (first.known)
     recall_first_hits(first, result, s.paths.count, s.hits);
   else
-    closest<Geometry>(c, s.paths, true, s.hits);
+    closest<Geometry>(c, s.paths, true, s.hits, {s.paths.names.key, s.paths.names.index, options.sobol});
   if (first.t && !first.known) return keep_first_hits(first, result, s.paths.count, s.hits);
   absorb<Geometry>(c, s.hits, false, s.paths);
   surfaces<Geometry, features, true>(c, s.paths, s.hits, true, s.camera, s.radiance, false, views);

@@ -10,6 +10,7 @@ struct VisibilityScratch {
   alignas(64) uint32_t pyramids[max_blockers + 16];
   VecArray<capacity> o, d;
   alignas(64) UintArray pixel;
+  alignas(64) FloatArray kept;  ///< as in ShadowBatch
   alignas(64) uint8_t blocked[capacity];
 };
 
@@ -37,15 +38,31 @@ CASTRAY_INLINE Mask lanes_of(uint64_t pixels, int i) {
   return mask_of_bits((uint32_t)(pixels >> (i * width)) & (uint32_t)((1ull << width) - 1));
 }
 
-/// Visibility of the pixels `asked` by one shadow ray each.
+/// Scales what pixels get by what the n shadow rays traced leave of it. The `own` pixel is known not to be
+/// occluded.
+CASTRAY_INLINE void thin(const VisibilityScratch& s, int n, int own, bool weights, Transfer& t) {
+  alignas(64) float kept[tile_pixels];
+  for (float& k : kept) k = 1;
+  for (int k = 0; k < n; ++k) kept[s.pixel[k]] = s.blocked[k] && (int)s.pixel[k] != own ? 0 : s.kept[k];
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Float left = load(kept + i * width);
+    t.density[i] = t.density[i] * left;
+    if (weights) t.weight[i] = t.weight[i] * left;
+  }
+}
+
+/// Visibility of the pixels `asked` by one shadow ray each. Where partial triangles may lie between, all are
+/// asked: they thin the light of the sender's own pixel, too, which found it by chance.
 template <class Geometry, class AnySender>
 CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers& tile, uint64_t asked,
                                  VisibilityScratch& s, bool weights, Transfer& t) {
   const Geometry geometry = geometry_of<Geometry>(c);
+  const bool thins = geometry.thins() && asked == ~0ull;
+  const Uint known((uint32_t)(thins ? -1 : y.own));
   int n = 0;
   for (int i = 0; i < tile_vectors; ++i) {
     const Uint pixel = Uint((uint32_t)(i * width)) + lane_index();
-    const Mask open = lanes_of(asked, i) & (t.density[i] > Float(0.f)) & ~(pixel == Uint((uint32_t)y.own));
+    const Mask open = lanes_of(asked, i) & (t.density[i] > Float(0.f)) & ~(pixel == known);
     const int entry = tile.first + i * width;
     const Segment traced = segment_of(geometry, y, load(tile.x.p, entry), load(tile.x.normal, entry));
     compress_store(s.o, n, open, traced.o);
@@ -53,8 +70,10 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers
     compress_store(s.pixel + n, open, pixel);
     n += count(open);
   }
-  geometry.occluded({s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, c.ends.one, s.blocked, (uint32_t)n});
+  geometry.occluded({s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, c.ends.one, s.blocked, (uint32_t)n,
+                     thins ? s.kept : nullptr});
   c.asked += (uint64_t)n;
+  if (thins) return thin(s, n, y.own, weights, t);
   uint64_t hidden = 0;
   for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];
   for (int i = 0; i < tile_vectors; ++i) hide(t, i, lanes_of(hidden, i), weights);

@@ -111,6 +111,7 @@ struct ShadowRays {
   int count = 0;
   VecArray<capacity> o, d, radiance;
   alignas(64) UintArray slot;
+  alignas(64) FloatArray kept;  ///< as in ShadowBatch
   alignas(64) uint8_t blocked[capacity];
 };
 
