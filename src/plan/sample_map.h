@@ -36,6 +36,11 @@ class SampleMap {
   bool wants(int x, int y, std::uint64_t sample) const {
     return uniform_ || sample - first_ < counts_[index(x, y)];
   }
+  /// Whether all pixels of a rectangle in the window do, whose sides are at most those of a block.
+  bool wants_all(int x0, int y0, int x1, int y1, std::uint64_t sample) const {
+    return wants(x0, y0, sample) && wants(x1 - 1, y0, sample) && wants(x0, y1 - 1, sample) &&
+           wants(x1 - 1, y1 - 1, sample);
+  }
   /// Whether any pixel of the window with x0 <= x < x1, y0 <= y < y1 does.
   bool wants_any(int x0, int y0, int x1, int y1, std::uint64_t sample) const;
 

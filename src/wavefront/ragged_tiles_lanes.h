@@ -19,13 +19,19 @@ CASTRAY_INLINE Uint swap_across_edge(uint32_t key, Uint at, Uint along) {
   return select(to_float(dice >> 8) * Float(0x1p-24f) < chance, mirrored, at);
 }
 
-/// Where two tiles meet along a strip of four pixels: in two of its rows one tile reaches into the other, in
-/// the two beside them the other into the one, so that most neighbours stay in one tile.
-struct Seam {
-  int reach;      ///< in pixels
-  uint32_t side;  ///< the bit `half_strip` of the rows in which the tile before the edge reaches further
-};
 constexpr int strip_side = tile_size / 2, half_strip = strip_side / 2;
+constexpr int strips_of_seam = (tile_size + 2 * ragged_reach) / strip_side,
+              seams_of_tile = 2 * 2 * strips_of_seam;
+static_assert(strips_of_seam == 4 && seams_of_tile % width == 0);
+
+/// The seams of a tile, by axis (0: across x, 1: across y), edge and strip of four pixels. In two rows of a
+/// strip one tile reaches into the other, in the two beside them the other into the one, so that most
+/// neighbours stay in one tile.
+struct Seams {
+  uint32_t reach[seams_of_tile];  ///< in pixels
+  uint32_t side[seams_of_tile];   ///< the bit `half_strip` of the rows in which the tile before the edge
+                                  ///< reaches further
+};
 
 /// How far from a tile's edge no pixel of a strip sees an edge of a surface, `reach` at most. `kinds`: of the
 /// strip's first pixel beyond the tile's edge.
@@ -38,50 +44,81 @@ CASTRAY_INLINE int reach_on_surface(const uint8_t* kinds, int step_across, int s
   return reach;
 }
 
-/// That of a tile of the job at its edge `edge` across an axis (0: x, 1: y), along from `along` on; both as
-/// from the tile's first pixel. It reaches up to 4 pixels in a first sample, so that the edge is in all
-/// places alike, half as far in the next, but not past an edge of a surface: paths are shared best on one
-/// surface.
-CASTRAY_INLINE Seam seam_at(const Context& c, uint32_t key, const TilePlace& tile, int axis, int edge,
-                            int along) {
+/// A random number of each. Two tiles find the same for the seam between them.
+CASTRAY_INLINE void draw_seams(uint32_t key, const TilePlace& tile, uint32_t (&dice)[seams_of_tile]) {
+  const Uint left((uint32_t)(tile.grid_x * tile_size)), top((uint32_t)(tile.grid_y * tile_size));
+  for (int i = 0; i < seams_of_tile; i += width) {
+    const Uint number = Uint((uint32_t)i) + lane_index();
+    const Uint axis = number >> 3, high = (number >> 2) & 1u, strip = number & 3u;
+    const Mask across_x = axis < Uint(1u);
+    const Uint across = select(across_x, left, top) + high * Uint((uint32_t)tile_size);
+    const Uint from =
+        select(across_x, top, left) + strip * Uint((uint32_t)strip_side) - Uint((uint32_t)ragged_reach);
+    store(dice + i, hash_combine(hash_combine(Uint(key) + axis, across), from));
+  }
+}
+
+/// Whether any pixel that a tile's seams may move sees an edge.
+CASTRAY_INLINE bool any_edge_around(const EdgeTable& table, const TilePlace& tile) {
+  constexpr int side = tile_size + 2 * ragged_reach;
+  const uint8_t* kinds =
+      table.kinds + (tile.y - ragged_reach - table.y0) * table.width + (tile.x - ragged_reach - table.x0);
+  uint64_t any = 0;
+  for (int y = 0; y < side; ++y) {
+    uint64_t row[side / 8];
+    __builtin_memcpy(row, kinds + y * table.width, sizeof row);
+    for (const uint64_t eight : row) any |= eight;
+  }
+  return any != 0;
+}
+
+/// They reach up to 4 pixels in a first sample, so that the edge is in all places alike, half as far in the
+/// next, but not past an edge of a surface: paths are shared best on one surface.
+CASTRAY_INLINE void find_seams(const Context& c, uint32_t key, const TilePlace& tile, Seams& seams) {
   const EdgeTable& table = c.scene.edges;
-  const int origin[2] = {tile.grid_x * tile_size, tile.grid_y * tile_size};
+  const uint32_t most = (uint32_t)ragged_reach >> c.job.sample;
+  const bool any_edge = any_edge_around(table, tile);
   const int pixel[2] = {tile.x - table.x0, tile.y - table.y0};
   const int step[2] = {1, table.width};
-  const Uint across((uint32_t)(origin[axis] + edge)), from((uint32_t)(origin[1 - axis] + along));
-  const uint32_t dice = lane(hash_combine(hash_combine(Uint(key + (uint32_t)axis), across), from), 0);
-  const uint32_t most = (uint32_t)ragged_reach >> c.job.sample;
-  const int reach = (int)((most * (dice >> 16) + 0x8000u) >> 16);
-  const uint8_t* kinds =
-      table.kinds + (pixel[axis] + edge) * step[axis] + (pixel[1 - axis] + along) * step[1 - axis];
-  return {reach_on_surface(kinds, step[axis], step[1 - axis], reach), dice & half_strip};
+  uint32_t dice[seams_of_tile];
+  draw_seams(key, tile, dice);
+  for (int i = 0; i < seams_of_tile; ++i) {
+    const int axis = i / (2 * strips_of_seam), high = i / strips_of_seam % 2, strip = i % strips_of_seam;
+    int reach = (int)((most * (dice[i] >> 16) + 0x8000u) >> 16);
+    if (any_edge) {
+      const uint8_t* kinds = table.kinds + (pixel[axis] + high * tile_size) * step[axis] +
+                             (pixel[1 - axis] + strip * strip_side - ragged_reach) * step[1 - axis];
+      reach = reach_on_surface(kinds, step[axis], step[1 - axis], reach);
+    }
+    seams.reach[i] = (uint32_t)reach;
+    seams.side[i] = dice[i] & half_strip;
+  }
 }
 
 /// Places the pixels of a tile of the job with seams in the place of its edges. Those across x come first;
 /// those across y apply to where these put the pixels. Two tiles exchange pixels at a seam, so that each
 /// pixel is in one tile.
 CASTRAY_INLINE void place_in_strips(const Context& c, uint32_t key, int tile, TileResult& result) {
-  constexpr int strips = (tile_size + 2 * ragged_reach) / strip_side;
   const TilePlace place = place_of(c.job, tile);
-  Seam seams[2][2][strips];  // by axis, edge and strip
-  for (int axis = 0; axis < 2; ++axis)
-    for (int high = 0; high < 2; ++high)
-      for (int s = 0; s < strips; ++s)
-        seams[axis][high][s] = seam_at(c, key, place, axis, high * tile_size, s * strip_side - ragged_reach);
-  for (int i = 0; i < tile_pixels; ++i) {
-    int p[2] = {i % tile_size, i / tile_size};
-    for (int axis = 0; axis < 2; ++axis) {
-      int &across = p[axis], &along = p[1 - axis];
-      const bool high = across >= tile_size / 2;
-      const int steps = high ? tile_size - 1 - across : across;
-      const Seam& seam = seams[axis][high][(along + ragged_reach) / strip_side];
-      const bool reaches = high == (((uint32_t)along & half_strip) == seam.side);
-      if (steps >= seam.reach || !reaches) continue;
-      across = high ? tile_size + steps : -1 - steps;
-      along ^= half_strip;
+  Seams seams;
+  find_seams(c, key, place, seams);
+  for (int i = 0; i < tile_pixels; i += width) {
+    const Uint entry = Uint((uint32_t)i) + lane_index();
+    Uint p[2] = {entry & 7u, entry >> 3};
+    for (uint32_t axis = 0; axis < 2; ++axis) {
+      Uint &across = p[axis], &along = p[1 - axis];
+      const Mask low = across < Uint(tile_size / 2u);
+      const Uint steps = select(low, across, Uint(tile_size - 1u) - across);
+      const Uint seam = Uint(axis * 2 * strips_of_seam) +
+                        select(low, Uint(0u), Uint((uint32_t)strips_of_seam)) +
+                        ((along + Uint((uint32_t)ragged_reach)) >> 2);
+      const Mask before = (along & Uint((uint32_t)half_strip)) == gather(seams.side, seam);
+      const Mask moves = (steps < gather(seams.reach, seam)) & ((low & ~before) | (~low & before));
+      across = select(moves, select(low, Uint(~0u) - steps, Uint((uint32_t)tile_size) + steps), across);
+      along = select(moves, along ^ Uint((uint32_t)half_strip), along);
     }
-    result.x[tile * tile_pixels + i] = (uint32_t)(place.x + p[0]);
-    result.y[tile * tile_pixels + i] = (uint32_t)(place.y + p[1]);
+    store(result.x + tile * tile_pixels + i, Uint((uint32_t)place.x) + p[0]);
+    store(result.y + tile * tile_pixels + i, Uint((uint32_t)place.y) + p[1]);
   }
 }
 

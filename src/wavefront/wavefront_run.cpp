@@ -3,8 +3,10 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "core/sequences.h"
+#include "core/vector_clones.h"
 #include "wavefront/kernel_options.h"
 #include "wavefront/repeated_tiles.h"
 #include "wavefront/tile_grid.h"
@@ -15,6 +17,17 @@ namespace {
 
 Vec3f radiance_of(const TileResult& result, int i) {
   return {result.radiance[0][i], result.radiance[1][i], result.radiance[2][i]};
+}
+
+/// Whether no pixel of a tile has an infinite radiance, or one that is no number.
+CASTRAY_VECTOR_CLONES
+bool all_finite(const TileSamples& tile) {
+  constexpr std::uint32_t exponent = 0x7f800000;
+  std::uint32_t any = 0;
+  for (const float* channel : tile.radiance)
+    for (int i = 0; i < tile_pixels; ++i)
+      any |= (std::bit_cast<std::uint32_t>(channel[i]) & exponent) == exponent ? 1u : 0u;
+  return any == 0;
 }
 
 /// The sample of a half of the film that keeps differences: even and odd indices count up two sequences with
@@ -207,6 +220,14 @@ void WavefrontRun::add_tiles(const TileJob& job, int reach, const TileResult& re
   film.add({tiles, static_cast<std::size_t>(job.tiles)}, first, end);
 }
 
+bool WavefrontRun::wants_all(const TileJob& job, int k, bool ragged, const SampleMap& map) const {
+  const int reach = ragged ? ragged_reach : 0;
+  const int x0 = job.x + k * tile_size - reach, y0 = job.y - reach, x1 = x0 + tile_size + 2 * reach,
+            y1 = y0 + tile_size + 2 * reach;
+  return x0 >= window_.x0 && x1 <= window_.x1 && y0 >= window_.y0 && y1 <= window_.y1 &&
+         map.wants_all(x0, y0, x1, y1, job.sample);
+}
+
 TileSamples WavefrontRun::tile_samples(const TileJob& job, int k, bool ragged, const TileResult& result,
                                        const SampleMap& map, RowStats& stats) const {
   const int first = k * tile_pixels;
@@ -219,7 +240,13 @@ TileSamples WavefrontRun::tile_samples(const TileJob& job, int k, bool ragged, c
     tile.ragged_x = result.x + first;
     tile.ragged_y = result.y + first;
   }
-  for (int i = 0; i < tile_pixels; ++i) {
+  const bool whole = wants_all(job, k, ragged, map) && all_finite(tile);
+  if (whole) {
+    tile.kept = ~std::uint64_t{0};
+    tile.smooth = ~result.edges[k];
+  }
+  for (std::uint64_t left = whole ? result.edges[k] : ~std::uint64_t{0}; left != 0; left &= left - 1) {
+    const int i = std::countr_zero(left);
     const auto x = static_cast<int>(result.x[first + i]), y = static_cast<int>(result.y[first + i]);
     const std::uint64_t bit = std::uint64_t{1} << i;
     const bool smooth = (result.edges[k] & bit) == 0;

@@ -51,6 +51,9 @@ class WavefrontRun {
   void add_tiles(const TileJob& job, int reach, const TileResult& result, const SampleMap& map, Film& film,
                  RowStats& stats);
 
+  /// Whether all pixels that tile k of a job may have lie in the window and want its sample.
+  bool wants_all(const TileJob& job, int k, bool ragged, const SampleMap& map) const;
+
   TileSamples tile_samples(const TileJob& job, int k, bool ragged, const TileResult& result,
                            const SampleMap& map, RowStats& stats) const;
 
