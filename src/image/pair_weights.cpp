@@ -20,9 +20,9 @@ constexpr float means_per_contradiction = 4;
 constexpr float doubt = 0.3f;
 /// The least noise of a difference, and of a mean, over the luminance around, and over the film's scale.
 constexpr float least_of_difference = 1e-3f, least_of_mean = 1e-4f, least_of_scale = 1e-8f;
-/// The most that a pair weighs more than a mean, so that corrections reach some hundred pixels and no
-/// further.
-constexpr float stiffest = 16384;
+/// The most that a pair weighs more than a mean, so that corrections reach some twenty pixels and not much
+/// further: where few samples tell the weights, differences that are trusted too much add up along the way.
+constexpr float stiffest = 512;
 
 float square(float x) { return x * x; }
 
