@@ -56,6 +56,8 @@ class Wavefront final : public PreparedIntegrator {
   std::string decisions(const Job& job) const override {
     std::string items = plan_.light_paths ? "; light-paths=on" : "";
     items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
+    if (plan_.suffixes > 0 && plan_.suffixes == plan_.few_suffixes)
+      items += fmt::format("; suffixes={}", plan_.suffixes);
     if (keeps_differences(job.options, plan_))
       items += fmt::format("; differences=on; edge-samples={}", plan_.edge_samples);
     if (plan_.light_regions > 0) items += "; light-choice=learned";

@@ -130,6 +130,37 @@ TEST_CASE("paths are shared if that does better by more than its error, or by mu
   }
 }
 
+TEST_CASE("beside mirrors and glass few suffixes are shared in doubt, and all of them if that gains much") {
+  for (const auto& [gain, error, suffixes] :
+       {std::tuple{3.0, 1.2, 64}, {2.0, 1.1, 32}, {1.1, 1.4, 32}, {0.9, 1.1, 32}, {0.8, 1.0, 0}}) {
+    Plan plan;
+    plan.suffixes = 64;
+    plan.few_suffixes = 32;
+    choose_by_pilot(plan, gain, error);
+    CHECK(plan.suffixes == suffixes);
+  }
+  Plan bright;  // bright hits, which suffixes do not share, are most of the error: as without mirrors
+  bright.suffixes = 64;
+  bright.few_suffixes = 32;
+  bright.gain_of_light_paths = 300;
+  choose_by_pilot(bright, 1.1, 1.3);
+  CHECK(bright.suffixes == 0);
+}
+
+TEST_CASE("an image with few suffixes by a pilot is that of as many given, and its film tells them") {
+  const Scene floor = standard_scene("kinds/glossy_floor");
+  RenderOptions options;
+  options.width = options.height = 64;
+  options.spp = 1;
+  RenderOptions few = options;
+  few.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 32};
+  const Film film = render(floor, options).film;
+  CHECK_THAT(film.key, Catch::Contains("sharing=on; suffixes=32"));
+  CHECK(describe(film).at("castray:suffixes") == "32");
+  CHECK_THAT(describe(film).at("castray:options"), !Catch::Contains("--suffixes"));  // there is no such flag
+  CHECK(film.image().pixels == render(floor, few).film.image().pixels);
+}
+
 namespace {
 
 /// Where a job's pixels are, and their radiance.
