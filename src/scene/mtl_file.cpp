@@ -44,6 +44,8 @@ constexpr NumberKey number_keys[] = {
     {"ps", &MtlMaterial::sheen, 1},
     {"pc", &MtlMaterial::clearcoat, 1},
     {"pcr", &MtlMaterial::clearcoat_roughness, 1},
+    {"aniso", &MtlMaterial::anisotropy, 1},
+    {"anisor", &MtlMaterial::anisotropy_rotation, 1},
 };
 
 struct MapKey {
@@ -68,8 +70,7 @@ constexpr MapKey map_keys[] = {
     {"bump", MtlMap::bump},
 };
 
-/// What would change the picture, but is not done: numbers unless they are 0, and images.
-constexpr std::string_view numbers_not_done[] = {"aniso"};
+/// Images that would change the picture, but are not done.
 constexpr std::string_view maps_not_done[] = {"map_aniso", "map_anisor", "disp", "map_disp", "decal"};
 
 class MtlReader {
@@ -106,10 +107,7 @@ class MtlReader {
       return read_number(key, material.*(k->number), k->greatest);
     if (const auto k = std::ranges::find(map_keys, name, &MapKey::key); k != std::end(map_keys))
       return read_map(key, material.map(k->map));
-    if (std::ranges::find(maps_not_done, name) != std::end(maps_not_done) ||
-        (std::ranges::find(numbers_not_done, name) != std::end(numbers_not_done) &&
-         lines_.required_number(key) != 0))
-      return warn(key + " is not done");
+    if (std::ranges::find(maps_not_done, name) != std::end(maps_not_done)) return warn(key + " is not done");
     if (std::ranges::find(mtl_.ignored, key) == mtl_.ignored.end() && mtl_.ignored.size() < most_ignored)
       mtl_.ignored.push_back(key);
   }

@@ -36,7 +36,7 @@ struct MtlMaterial {
   SourcePlace place;
   std::optional<Vec3d> kd{}, ks{}, ke{}, tf{};
   std::optional<double> ns{}, ni{}, dissolve{}, transparency{}, roughness{}, metallic{}, sheen{}, clearcoat{},
-      clearcoat_roughness{};
+      clearcoat_roughness{}, anisotropy{}, anisotropy_rotation{};
   std::optional<int> illum{};
   std::array<std::optional<TextureStatement>, mtl_maps> maps{};
 

@@ -195,6 +195,18 @@ class Meaning {
     } else {
       material_.map(ks) = {};
     }
+    read_anisotropy();
+  }
+
+  /// Disney's (Burley 2012): the ratio of the lobe's widths is 1 - 0.9 aniso, and anisor a share of a turn.
+  void read_anisotropy() {
+    const double amount = mtl_.anisotropy.value_or(0);
+    if (amount == 0) return;
+    if (material_.type != MaterialType::conductor)
+      return builder_.warnings.add(mtl_.place, "aniso is done for metals alone: Pm 1 without a coat",
+                                   Harm::changes_picture);
+    material_.anisotropy = 0.9 * amount;
+    material_.anisotropy_rotation = 360 * mtl_.anisotropy_rotation.value_or(0);
   }
 
   void set_conductor(const Vec3d& color, SurfaceParameter source) {

@@ -237,8 +237,18 @@ TEST_CASE("options of images") {
   CHECK(map.channel == Channel::green);
 }
 
+TEST_CASE("aniso of a metal is the ratio of its lobe's widths, anisor a share of a turn") {
+  Read read("Pm 1\nPr .5\naniso .5\nanisor .25\n");
+  CHECK(read.warning().empty());
+  CHECK(read.material().type == MaterialType::conductor);
+  CHECK(read.material().anisotropy == 0.45);
+  CHECK(read.material().anisotropy_rotation == 90);
+  CHECK(Read("Pm .5\naniso .5\n").warning() == "aniso is done for metals alone: Pm 1 without a coat");
+  CHECK(Read("Pm 1\nanisor .5\n").material().anisotropy == 0);
+}
+
 TEST_CASE("what is not done and would be seen is told") {
-  CHECK(Read("aniso .5\n").warning() == "aniso is not done");
+  CHECK(Read("aniso .5\n").warning() == "aniso is done for metals alone: Pm 1 without a coat");
   CHECK(Read("map_aniso grey.pfm\n").warning() == "map_aniso is not done");
   CHECK(Read("Pc 0\nPs 0\naniso 0\nPcr .03\nKa 1 1 1\nsharpness 60\n").warning().empty());
   CHECK(Read("disp grey.pfm\n").warning() == "disp is not done");
