@@ -231,6 +231,8 @@ class Collapser {
         wide.upper[axis][slot] = used ? treelet.child(slot).upper[axis] : -infinity;
       }
       wide.child[slot] = 0;
+      for (std::int16_t(&normal)[bvh_width] : wide.normal) normal[slot] = 0;
+      wide.spread[slot] = no_surface;
     }
     for (std::uint32_t octant = 0; octant < 8; ++octant) wide.order[octant] = treelet.order(octant);
     for (int slot = 0; slot < treelet.children(); ++slot) {

@@ -46,6 +46,8 @@ struct TriangleTree {
   WideBvhView bvh;  ///< without meaning where the scene is held as an InstanceTree
   TriangleTable triangles;
   PartialTriangles partial;
+  bool has_surface;  ///< a part of the triangles is a ClosedSurface
+  WideBvhView rim;   ///< the free edges of that
 };
 
 /// A scene is held as one of the three; the last shares the tables of the second.

@@ -55,8 +55,11 @@ class InstanceGeometry {
     return fma(normal, error, p);
   }
 
+  CASTRAY_INLINE bool may_leave_out(const float (&)[3], const Box&) const { return false; }
+
   template <class Apex>
-  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& budget, Shaft& out) const {
+  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& budget, Shaft& out,
+                                 float /*facing*/) const {
     return instance_shaft(tree_, there(), apex, box, budget, out);
   }
 

@@ -49,10 +49,14 @@ class ListGeometry {
   /// is already offset by its error to the side of `normal`; a facet's error includes that of the test.
   CASTRAY_INLINE Vec far_end(const Vec& p, const Vec& /*normal*/, const Vec& /*from*/) const { return p; }
 
-  /// The possible blockers between an apex and a box. False: too many.
+  /// Whether make_shaft may leave out triangles that face an apex, if the box's points and the apex see each
+  /// other by paths in the hull of the two and of `origin`.
+  CASTRAY_INLINE bool may_leave_out(const float (&)[3], const Box&) const { return false; }
+
+  /// The possible blockers between an apex and a box. False: too many. `facing`: see triangle_shaft.
   template <class Apex>
-  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& /*budget*/,
-                                 Shaft& out) const {
+  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& /*budget*/, Shaft& out,
+                                 float /*facing*/) const {
     return facet_shaft(list_.blocker_fields, apex, box, out);
   }
 

@@ -42,17 +42,15 @@ struct Shaft {
 };
 
 /// How many packets of triangles, and four times as many nodes, a shaft may hold before a ray for each
-/// point of the box is cheaper. A shaft that exceeds it lowers the budget of the next shafts to the same
-/// box.
+/// point of the box is cheaper. A shaft that exceeds it halves the budget of the next shafts to the same box,
+/// one that does not doubles it again.
 struct ShaftBudget {
   static constexpr int most = max_blockers / packet_size, least = 3;
   int packets = most;
 
   int nodes() const { return 4 * packets; }
   void gave_up() { packets = packets / 2 > least ? packets / 2 : least; }
-  void succeeded(int met) {
-    if (met > packets / 2 && packets * 2 <= most) packets *= 2;
-  }
+  void succeeded() { packets = packets * 2 < most ? packets * 2 : most; }
 };
 
 /// Numbers of the pyramids that meet a part of the box, to `out`; returns how many. `center`: the part's,

@@ -38,9 +38,14 @@ class TreeGeometry {
   }
 
   template <class Apex>
-  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& budget, Shaft& out) const {
-    return has_partial() ? triangle_shaft(tree_.bvh, there_, apex, box, budget, out)
-                         : triangle_shaft(tree_.bvh, AllThere{}, apex, box, budget, out);
+  CASTRAY_INLINE bool make_shaft(const Apex& apex, const Box& box, ShaftBudget& budget, Shaft& out,
+                                 float facing) const {
+    return has_partial() ? triangle_shaft(tree_.bvh, there_, apex, box, budget, out, 0)
+                         : triangle_shaft(tree_.bvh, AllThere{}, apex, box, budget, out, facing);
+  }
+
+  CASTRAY_INLINE bool may_leave_out(const float (&origin)[3], const Box& box) const {
+    return tree_.has_surface && clear_of_rim(tree_.rim, origin, box);
   }
 
  private:

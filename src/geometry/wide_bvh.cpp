@@ -5,10 +5,12 @@
 
 #include "geometry/bvh_build.h"
 #include "geometry/collapse.h"
+#include "geometry/node_normals.h"
 
 namespace castray {
 
-WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality quality) {
+WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality quality,
+                       const ClosedSurface* surface) {
   const auto start = std::chrono::steady_clock::now();
   WideBvh bvh;
   if (mesh.count > 0) {
@@ -19,6 +21,7 @@ WideBvh WideBvh::build(const MeshView& mesh, int threads, BuildQuality quality) 
                                      .split_share = quality == BuildQuality::best ? 2.0 : 0.0};
     const BinaryTree tree = build_binary_tree(mesh, parameters);
     WideTree wide = collapse(tree, mesh, threads);
+    if (surface) bound_normals(wide, *surface, threads);
     bvh.blocks_ = std::move(wide.blocks);
     bvh.view_.root = wide.root;
     bvh.view_.depth = wide.depth;

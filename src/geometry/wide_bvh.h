@@ -3,6 +3,7 @@
 #include "castray/render.h"
 #include "geometry/block_array.h"
 #include "geometry/bvh.h"
+#include "geometry/closed_surface.h"
 #include "geometry/wide_bvh_view.h"
 
 namespace castray {
@@ -14,7 +15,9 @@ class WideBvh {
  public:
   /// The hierarchy does not depend on `threads`. `best` cuts the boxes of wasteful triangles first, whatever
   /// it gains (see choose_build): three times the memory, five times the build. `automatic` is `fast`.
-  static WideBvh build(const MeshView& mesh, int threads, BuildQuality quality = BuildQuality::fast);
+  /// With a `surface` of the mesh, shafts may leave out its triangles that face what they are seen from.
+  static WideBvh build(const MeshView& mesh, int threads, BuildQuality quality = BuildQuality::fast,
+                       const ClosedSurface* surface = nullptr);
 
   /// Valid as long as this lives.
   WideBvhView view() const { return view_; }

@@ -16,13 +16,20 @@ inline constexpr uint32_t child_unit = 8;
 inline constexpr uint32_t leaf_flag = 4;
 inline constexpr uint32_t max_leaf_packets = 4;
 
-/// Eight children: their boxes, plane by plane.
+/// Unit of WideNode::normal and spread.
+inline constexpr float normal_unit = 0x1p-14f;
+/// WideNode::spread of children that are not wholly of a closed surface.
+inline constexpr uint16_t no_surface = 0xffff;
+
+/// Eight children: their boxes, plane by plane, and which way they face.
 struct alignas(block_bytes) WideNode {
   float lower[3][bvh_width];  ///< an unused slot holds the empty box, +infinity to -infinity
   float upper[3][bvh_width];
   uint32_t child[bvh_width];
   uint32_t order[8];  ///< for each octant of directions (bit i: component i is negative), the slots from the
                       ///< farthest to the nearest, four bits each, the farthest lowest
+  int16_t normal[3][bvh_width];  ///< centre and radius of a ball that holds the unit normals of all triangles
+  uint16_t spread[bvh_width];    ///< below the child, in normal_unit; or no_surface
 };
 
 /// Eight triangles, vertex by vertex and axis by axis, exactly as in the mesh. Unused lanes go along the

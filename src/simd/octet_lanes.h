@@ -18,6 +18,27 @@ using U8 = uint32_t __attribute__((vector_size(32)));
 CASTRAY_INLINE F8 load8(const float* p) { return *(const F8*)p; }
 CASTRAY_INLINE F8 splat8(float s) { return s - F8{}; }  // a plain broadcast, see Float
 
+CASTRAY_INLINE F8 load8(const int16_t* p) {
+  using Shorts = int16_t __attribute__((vector_size(16)));
+  return __builtin_convertvector(__builtin_convertvector(*(const Shorts*)p, I8), F8);
+}
+CASTRAY_INLINE F8 load8(const uint16_t* p) {
+  using Shorts = uint16_t __attribute__((vector_size(16)));
+  return __builtin_convertvector(__builtin_convertvector(*(const Shorts*)p, I8), F8);
+}
+
+CASTRAY_INLINE F8 sqrt8(F8 a) {
+#ifdef __AVX2__
+  return (F8)_mm256_sqrt_ps((__m256)a);
+#else
+  __m128 half[2];
+  __builtin_memcpy(half, &a, sizeof half);
+  for (__m128& h : half) h = _mm_sqrt_ps(h);
+  __builtin_memcpy(&a, half, sizeof half);
+  return a;
+#endif
+}
+
 /// Of two NaN or equal operands the second, as the instructions do.
 CASTRAY_INLINE F8 min8(F8 a, F8 b) {
 #ifdef __AVX2__

@@ -116,7 +116,7 @@ CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxe
       transfer<Geometry, features>(
           c,
           Sender{broadcast_entry(suffixes.y.p, entry), broadcast_entry(suffixes.y.normal, entry),
-                 origin - gatherers.first},
+                 origin - gatherers.first, true},
           gatherers, s, t);
       const float density = ordered_sum(t.density) / stratum;
       if (!(density > 0)) continue;

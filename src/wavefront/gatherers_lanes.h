@@ -13,10 +13,16 @@ inline constexpr int tile_vectors = tile_pixels / width;
 inline constexpr int tile_parts = 4, part_pixels = tile_pixels / tile_parts,
                      part_vectors = part_pixels / width;
 
-/// Bounds of a tile's points, and of its parts.
+/// Bounds of a tile's points, of its parts, and of groups of points that lie near each other.
 struct TileBoxes {
   Box all, part[tile_parts];
-  bool empty;  ///< no point of the tile is on a surface
+  /// One group of all points; or two, which a gap parts: then the box of both is mostly empty, and what lies
+  /// between a sender and the gap is in nobody's way.
+  int groups;
+  uint64_t pixels[2];  ///< of the groups
+  Box group[2];
+  float facing;  ///< see Geometry::make_shaft, for senders that some point of the tile is known to see
+  bool empty;    ///< no point of the tile is on a surface
 };
 
 /// Where the suffixes of a tile may start.
@@ -30,8 +36,11 @@ struct Gatherers {
   const Vertices& x;
   int first;
   const TileBoxes& boxes;
-  ShaftBudget budget{};
+  ShaftBudget budget[2]{};  ///< by group
 };
+
+/// Whether a tile's points, seen from the camera at once, show more fronts (1) or backs (-1).
+float side_seen(const Vertices& x, int first);
 
 /// Sum of 64 values, in an order that does not depend on the width: 16 strided sums, which are then added
 /// pairwise.
@@ -52,7 +61,7 @@ CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
 /// and those of like orientation side by side.
 void find_origins(const Vertices& x, int first, bool by_normal, Origins& origins);
 
-/// Bounds of a tile's points; with `in_parts` also those of its parts.
+/// Bounds of a tile's points; with `in_parts` also those of its parts and groups.
 void bound_tile(const Vertices& x, int first, bool in_parts, TileBoxes& boxes);
 
 }  // namespace castray::CASTRAY_ISA

@@ -65,8 +65,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.geometry.list.blocker_fields = facets.blocker_field_list();
   } else {
     if (scene.instances.empty()) {
-      bvh = WideBvh::build(mesh_of(scene), threads, plan.build);
-      view.geometry.tree.bvh = bvh->view();
+      build_tree(scene, plan.build, threads);
     } else {
       instances = InstanceBvh::build(scene, threads, plan.build);
       view.geometry.instances = instances->view();
@@ -93,6 +92,19 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
   }
   static_cast<MaterialTables&>(view) = materials.tables();
   look_through(view, scene.camera, width, height);
+}
+
+void KernelSceneData::build_tree(const Scene& scene, BuildQuality quality, int threads) {
+  const MeshView mesh = mesh_of(scene);
+  const ClosedSurface surface =
+      coverage.partial_triangles() ? ClosedSurface{} : closed_surface(mesh, threads);
+  const bool has_surface = std::ranges::find(surface.has, true) != surface.has.end();
+  bvh = WideBvh::build(mesh, threads, quality, has_surface ? &surface : nullptr);
+  rim = WideBvh::build({mesh.positions, surface.rim.data(), static_cast<std::uint32_t>(surface.rim.size())},
+                       threads);
+  view.geometry.tree.bvh = bvh->view();
+  view.geometry.tree.has_surface = has_surface;
+  view.geometry.tree.rim = rim->view();
 }
 
 void look_through(KernelScene& view, const Camera& camera, int width, int height) {

@@ -35,6 +35,7 @@ struct KernelSceneData {
   Facets facets;                              ///< of a list
   std::optional<FacetsInDouble> edges;        ///< of a list
   std::optional<WideBvh> bvh;                 ///< of a tree
+  std::optional<WideBvh> rim;                 ///< of a tree's closed surface
   std::optional<InstanceBvh> instances;       ///< of instances
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   Coverage coverage;
@@ -45,6 +46,9 @@ struct KernelSceneData {
   Environment environment;
   std::vector<KernelDelta> deltas;
   KernelScene view{};
+
+ private:
+  void build_tree(const Scene& scene, BuildQuality quality, int threads);
 };
 
 /// Makes a camera that of the view, for an image of this size.

@@ -47,6 +47,15 @@ CASTRAY_STAGE void light_each_by_deltas(Context& c, Scratch& s, const Vertices& 
   if (direct) add_unblocked_to_direct(c, s);
 }
 
+/// TileBoxes::facing of what the camera sees directly.
+template <class Geometry>
+CASTRAY_INLINE float facing_seen(const Context& c, const Vertices& x, int tile, const TileBoxes& boxes) {
+  const KernelCamera& camera = c.scene.camera;
+  if (camera.projection == orthographic_rays || camera.has_lens || boxes.empty) return 0;
+  if (!geometry_of<Geometry>(c).may_leave_out(camera.position, boxes.all)) return 0;
+  return side_seen(x, tile * tile_pixels);
+}
+
 /// Light reflected by vertices x, gathered tile by tile, becomes s.gathered. `direct`: the camera sees x.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) {
@@ -54,6 +63,7 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     bound_tile(x, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
+    s.boxes[tile].facing = direct ? facing_seen<Geometry>(c, x, tile, s.boxes[tile]) : 0;
     find_origins(x, tile * tile_pixels, c.scene.lights.environment.shines, s.suffixes.origins[tile]);
   }
   light_each_by_deltas<Geometry, features>(c, s, x, direct);

@@ -11,9 +11,11 @@
 namespace castray::CASTRAY_ISA {
 
 /// A sender y, which emits to the side of its normal. `own`: the pixel that is known to see it, or -1.
+/// `seen`: some pixel is known to.
 struct Sender {
   Vec p, normal;
   int own;
+  bool seen;
 };
 
 /// A sender at infinity, in direction w.

@@ -22,6 +22,18 @@ CASTRAY_INLINE void hide(Transfer& t, int i, Mask hidden, bool weights) {
 CASTRAY_INLINE NearApex apex_of(const Sender& y, const Box& /*tile*/) { return {y.p}; }
 CASTRAY_INLINE FarApex apex_of(const FarSender& y, const Box& tile) { return {y.w, broadcast(tile.center)}; }
 
+/// Which triangles need no test between a sender and a tile: see TileBoxes::facing.
+template <class Geometry>
+CASTRAY_INLINE float facing_of(const Geometry& geometry, const Sender& y, const TileBoxes& boxes) {
+  if (boxes.facing == 0 || !y.seen) return 0;
+  const float p[3] = {lane(y.p.x, 0), lane(y.p.y, 0), lane(y.p.z, 0)};
+  return geometry.may_leave_out(p, boxes.all) ? boxes.facing : 0;
+}
+template <class Geometry>
+CASTRAY_INLINE float facing_of(const Geometry&, const FarSender&, const TileBoxes&) {
+  return 0;
+}
+
 /// The segment to trace between a sender and a point p of a tile.
 template <class Geometry>
 CASTRAY_INLINE Segment segment_of(const Geometry& geometry, const Sender& y, const Vec& p,
@@ -82,15 +94,15 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers
 /// With more pyramids than this, it pays to select those that meet each part of a tile.
 inline constexpr int few_pyramids = 16;
 
-/// Visibility by the pyramids of the shaft. Returns the pixels that it leaves open: those on the outline of a
-/// pyramid, as far as rounding tells.
+/// Visibility of `pixels` of the tile by the pyramids of the shaft to their box. Returns the pixels that it
+/// leaves open: those on the outline of a pyramid, as far as rounding tells.
 template <class Geometry, class AnySender>
-CASTRAY_INLINE uint64_t hide_by_pyramids(const AnySender& y, const Gatherers& tile, VisibilityScratch& s,
-                                         bool weights, Transfer& t) {
+CASTRAY_INLINE uint64_t hide_by_pyramids(const AnySender& y, const Gatherers& tile, const Box& box,
+                                         uint64_t pixels, VisibilityScratch& s, bool weights, Transfer& t) {
   constexpr int corners = Geometry::blocker_corners;
   if (s.shaft.count == 0) return 0;
   const bool choose = Geometry::has_many_blockers && s.shaft.count > few_pyramids;
-  const Vec center = broadcast(tile.boxes.all.center);
+  const Vec center = broadcast(box.center);
   int pyramids = s.shaft.count;
   uint64_t unsure = 0;
   for (int i = 0; i < tile_vectors; ++i) {
@@ -99,7 +111,7 @@ CASTRAY_INLINE uint64_t hide_by_pyramids(const AnySender& y, const Gatherers& ti
       pyramids = pyramids_of_part<corners>(s.shaft, broadcast(part.center) - center, broadcast(part.half),
                                            s.pyramids);
     }
-    const Mask open = t.density[i] > Float(0.f);
+    const Mask open = (t.density[i] > Float(0.f)) & lanes_of(pixels, i);
     if (none(open)) continue;
     const Vec p = load(tile.x.p, tile.first + i * width) - center;
     Float inside(-__builtin_inff());
@@ -109,23 +121,34 @@ CASTRAY_INLINE uint64_t hide_by_pyramids(const AnySender& y, const Gatherers& ti
     }
     const Mask hidden = inside >= Float(1.f);
     const Mask own = Uint((uint32_t)(i * width)) + lane_index() == Uint((uint32_t)y.own);
-    hide(t, i, hidden & ~own, weights);
+    hide(t, i, open & hidden & ~own, weights);
     unsure |= (uint64_t)bits(open & ~hidden & (inside >= Float(-1.f))) << (i * width);
   }
   return unsure;
 }
 
-/// Visibility by a shaft, or by rays where it holds too much.
+CASTRAY_INLINE bool any_open(const Transfer& t, uint64_t pixels) {
+  Mask open(false);
+  for (int i = 0; i < tile_vectors; ++i) open = open | (lanes_of(pixels, i) & (t.density[i] > Float(0.f)));
+  return any(open);
+}
+
+/// Visibility by a shaft to each group of the tile's points, or by rays where that holds too much.
 template <class Geometry, uint32_t features, class AnySender>
 CASTRAY_INLINE void hide_blocked(Context& c, const AnySender& y, Gatherers& tile, VisibilityScratch& s,
                                  Transfer& t) {
   constexpr bool weights = features & feature_materials;
-  Mask open(false);
-  for (const Float& density : t.density) open = open | (density > Float(0.f));
-  if (none(open)) return;
-  uint64_t asked = ~0ull;
-  if (geometry_of<Geometry>(c).make_shaft(apex_of(y, tile.boxes.all), tile.boxes.all, tile.budget, s.shaft))
-    asked = hide_by_pyramids<Geometry>(y, tile, s, weights, t);
+  if (!any_open(t, ~0ull)) return;
+  const Geometry geometry = geometry_of<Geometry>(c);
+  const float facing = facing_of(geometry, y, tile.boxes);
+  uint64_t asked = 0;
+  for (int g = 0; g < tile.boxes.groups; ++g) {
+    const uint64_t pixels = tile.boxes.pixels[g];
+    const Box& box = tile.boxes.group[g];
+    if (!any_open(t, pixels)) continue;
+    const bool fits = geometry.make_shaft(apex_of(y, box), box, tile.budget[g], s.shaft, facing);
+    asked |= fits ? hide_by_pyramids<Geometry>(y, tile, box, pixels, s, weights, t) : pixels;
+  }
   if (asked) hide_by_rays<Geometry>(c, y, tile, asked, s, weights, t);
 }
 
