@@ -79,7 +79,8 @@ struct Material {
   double clearcoat_roughness = 0;  ///< principled, [0,1]
   double coverage = 1;             ///< [0,1]: the share of the surface that is there
   bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
-  double ior = 1.5;  ///< dielectric: index inside (where the normal points away from) over outside
+  double ior = 1.5;   ///< dielectric: index inside (where the normal points away from) over outside
+  bool thin = false;  ///< dielectric: two such surfaces close together, and nothing inside
   bool two_sided_emission = false;
   bool multiple_scattering = false;  ///< metals: add what facets reflect more than once
   bool vertex_colors = false;        ///< Scene::colors multiply kd where the triangle has them
@@ -118,7 +119,9 @@ struct Material {
     return emits() && (map(SurfaceParameter::ke).used() || map(SurfaceParameter::coverage).used());
   }
   bool may_have_holes() const { return coverage < 1 || map(SurfaceParameter::coverage).used(); }
-  bool absorbs() const { return type == MaterialType::dielectric && max_component(absorption) > 0; }
+  /// Whether its surface bounds a body that light goes into.
+  bool bounds_body() const { return type == MaterialType::dielectric && !thin; }
+  bool absorbs() const { return bounds_body() && max_component(absorption) > 0; }
   bool has_back() const { return back >= 0; }
   bool has_index() const { return eta.x > 0; }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }

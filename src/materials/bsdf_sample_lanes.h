@@ -14,7 +14,8 @@ struct Bsdf {
   Uint type;    ///< MaterialType
   Vec kd, ks;   ///< the values of slot_kd and slot_ks
   Float alpha;  ///< 0: smooth
-  Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side
+  Float eta;    ///< dielectric: index beyond the surface over that of the viewer's side;
+                ///< below 0: a thin wall, of index -eta
   Uint albedo;  ///< offset of its lobe's table, where it has one
   const KernelAlbedo* albedos;
   /// Principled: slot_metal_sheen and slot_coat; conductor, where `stretched`: slot_stretch. In their lanes

@@ -6,8 +6,12 @@ const MaterialDescriptor& dielectric_descriptor() {
   static const MaterialDescriptor descriptor{
       .type = MaterialType::dielectric,
       .name = "dielectric",
-      .text = "Glass: exact Fresnel reflection and refraction, smooth or through GGX facets.",
-      .formula = "reflection and refraction, smooth or through facets (Walter et al. 2007)",
+      .text =
+          "Glass: exact Fresnel reflection and refraction, smooth or through GGX facets; or a thin wall of "
+          "it.",
+      .formula =
+          "reflection and refraction, smooth or through facets (Walter et al. 2007); `thin`: 2 F / (1 + F) "
+          "is reflected, the rest goes straight on",
       .keys = with_common_keys({{.name = "ior",
                                  .kind = MaterialKey::Kind::number,
                                  .field = &Material::ior,
@@ -21,6 +25,11 @@ const MaterialDescriptor& dielectric_descriptor() {
                                  .parameter = SurfaceParameter::transmittance,
                                  .slot = slot_kd,
                                  .text = "Tint of what passes through the surface [1, 1, 1]."},
+                                {.name = "thin",
+                                 .kind = MaterialKey::Kind::flag,
+                                 .field = &Material::thin,
+                                 .text = "A smooth pane, of two surfaces and nothing inside: what passes "
+                                         "is not bent [false]."},
                                 {.name = "absorption",
                                  .kind = MaterialKey::Kind::color,
                                  .field = &Material::absorption,
@@ -30,7 +39,7 @@ const MaterialDescriptor& dielectric_descriptor() {
                                 roughness_key(),
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
-        const bool smooth = has_smooth_lobe(m) || m.ior == 1;
+        const bool smooth = has_smooth_lobe(m) || m.ior == 1 || m.thin;
         return trait_directional | trait_transmits | (smooth ? trait_specular : trait_focuses);
       },
       .albedo = [](const SurfaceValues<double>&) { return Vec3d(1); }};

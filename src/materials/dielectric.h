@@ -33,17 +33,22 @@ const MaterialDescriptor& dielectric_descriptor();
 /// Glass: reflection and refraction by the exact Fresnel equations, smooth or through GGX facets (Walter et
 /// al. 2007). What passes is tinted at each crossing. The normal points out of the medium of index `ior`.
 /// Radiance scales by (n_o / n_i)^2 where it crosses the surface.
+///
+/// A thin wall is a pane of two smooth surfaces, between which light goes to and fro: it reflects
+/// f + (1 - f)^2 f / (1 - f^2) = 2 f / (1 + f), and what passes goes straight on, tinted once.
 template <class T>
 struct Dielectric {
   T ior;
   Ggx<T> ggx;
   Vec3<T> transmittance{1};
+  bool thin = false;
 
   static const MaterialDescriptor& descriptor() { return dielectric_descriptor(); }
   static Dielectric make(const SurfaceValues<double>& values, const Material& m, const LobeTables&) {
     return {static_cast<T>(m.ior),
             {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
-            Vec3<T>(values.color(slot_kd))};
+            Vec3<T>(values.color(slot_kd)),
+            m.thin};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
@@ -70,6 +75,7 @@ struct Dielectric {
   BsdfSample<T> sample(const Vec3<T>& wo_, T u_lobe, Point2<T> u) const {
     const Vec3<T> wo = flip_with(wo_, wo_);
     if (!(wo.z > 0)) return {};
+    if (thin) return sample_thin(wo_, u_lobe);
     const T eta = relative_ior(wo_);
     const Vec3<T> h = smooth() ? Vec3<T>(0, 0, 1) : ggx.sample_normal(wo, u, 1);
     const T f = fresnel_dielectric(dot(wo, h), eta);
@@ -92,7 +98,18 @@ struct Dielectric {
   }
 
  private:
-  bool smooth() const { return ggx.smooth() || ior == 1; }
+  bool smooth() const { return ggx.smooth() || ior == 1 || thin; }
+
+  BsdfSample<T> sample_thin(const Vec3<T>& wo, T u_lobe) const {
+    const T one_side = fresnel_dielectric(std::abs(wo.z), ior);
+    const T reflectance = 2 * one_side / (1 + one_side);
+    const bool reflected = u_lobe < reflectance;
+    return {.weight = reflected ? Vec3<T>(1) : transmittance,
+            .wi = reflected ? Vec3<T>(-wo.x, -wo.y, wo.z) : -wo,
+            .pdf = reflected ? reflectance : 1 - reflectance,
+            .specular = true};
+  }
+
   /// n_i / n_o: of the medium beyond the surface over that of wo's side.
   T relative_ior(const Vec3<T>& wo) const { return wo.z < 0 ? T(1) / ior : ior; }
 

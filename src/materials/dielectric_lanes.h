@@ -38,12 +38,15 @@ struct Dielectric : ModelDefaults {
     const Mask smooth = b.smooth();
     const Vec up{Float(0.f), Float(0.f), Float(1.f)};
     const Vec h = select(smooth, up, ggx_sample_normal(b.alpha, wo, u, v, Float(1.f)));
-    const Float wo_h = dot(wo, h);
-    const Float f = fresnel_dielectric(wo_h, b.eta);
+    const Float wo_h = dot(wo, h), eta = abs(b.eta);
+    const Float of_surface = fresnel_dielectric(wo_h, eta);
+    const Mask thin = b.eta < Float(0.f);
+    const Float f = select(thin, Float(2.f) * of_surface / (Float(1.f) + of_surface), of_surface);
     const Mask reflected = choice < f;
-    const Vec wi = normalize(select(reflected, reflect(wo, h), refract(wo, h, b.eta)));
+    const Vec passed = select(thin, -wo, refract(wo, h, eta));
+    const Vec wi = normalize(select(reflected, reflect(wo, h), passed));
     const Mask possible = (reflected & (wi.z > Float(0.f))) | (~reflected & (wi.z < Float(0.f)));
-    const Float eta2 = select(reflected, Float(1.f), b.eta * b.eta);
+    const Float eta2 = select(reflected | thin, Float(1.f), eta * eta);
     const Vec above{wi.x, wi.y, abs(wi.z)};
     const Float masking = ggx_shadowing_over_cos(b.alpha, wo, above) * above.z * Float(2.f) *
                           (wo.z + ggx_stretched_length(b.alpha, wo));

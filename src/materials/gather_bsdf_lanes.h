@@ -16,7 +16,7 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
   Bsdf b;
   b.type = gather(table, &KernelMaterial::type, record);
   b.kd = p.kd();
-  b.eta = select(front, ior, Float(1.f) / ior);
+  b.eta = select(front | (ior < Float(0.f)), ior, Float(1.f) / ior);
   b.albedo = gather(table, &KernelMaterial::albedo, record);
   b.albedos = tables.albedos;
   b.record = record;

@@ -70,7 +70,7 @@ inline constexpr float least_clearcoat_alpha = 1e-3f;
 struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
-  float ior;
+  float ior;           ///< of a thin wall, times -1
   float eta[3], k[3];  ///< conductor: complex index of refraction; eta 0: constant reflectance
   float turn[2];       ///< conductor: cosine and sine of the angle from where u grows to where lobes are wide
   float absorption[3];        ///< dielectric: inside it, over a unit of length in scene space

@@ -50,14 +50,14 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   const MaterialDescriptor& descriptor = descriptor_of(m.type);
   KernelMaterial k{};
   k.coverage = static_cast<float>(m.coverage);
-  k.ior = static_cast<float>(m.ior);
+  k.ior = static_cast<float>(m.thin ? -m.ior : m.ior);
   put(k.eta, m.eta);
   put(k.k, m.k);
   const double turn = m.anisotropy_rotation * (pi<double> / 180);
   k.turn[0] = static_cast<float>(std::cos(turn));
   k.turn[1] = static_cast<float>(std::sin(turn));
   put(k.absorption, m.absorption * scene.unit);
-  if (m.type == MaterialType::dielectric) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
+  if (m.bounds_body()) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
   k.back = static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : materials.size()) *
            material_floats;
   k.type = static_cast<std::uint32_t>(m.type);

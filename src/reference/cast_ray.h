@@ -107,7 +107,7 @@ class CastRay {
     if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless);
     Surface<T> x = surfaces_.at(hit, ray, path.vertex == 0 ? path.pixel : std::nullopt);
     segments_.place(x, hit, ray);
-    if (transmits(x) && dot(x.normal, x.to_viewer) < 0) path.media.find(x.material);
+    if (bounds_body(x) && dot(x.normal, x.to_viewer) < 0) path.media.find(x.material);
     const Vec3<T> transmittance = kept(path.media, hit.t);
     path.throughput *= transmittance;
     return transmittance * radiance_of(x, path, hit.t, arrival);
@@ -132,14 +132,12 @@ class CastRay {
 
   Vec3<T> kept(const Media& media, T distance) const { return media.transmittance(scene_, distance); }
 
-  bool transmits(const Surface<T>& x) const {
-    return scene_.materials[x.material].type == MaterialType::dielectric;
-  }
+  bool bounds_body(const Surface<T>& x) const { return scene_.materials[x.material].bounds_body(); }
 
   /// The media on wi's side of x, where the path arrived through `media`.
   Media beyond(const Surface<T>& x, const Vec3<T>& wi, Media media) const {
     const bool front = dot(x.normal, x.to_viewer) > 0;
-    if (!transmits(x) || front == (dot(x.normal, wi) > 0)) return media;
+    if (!bounds_body(x) || front == (dot(x.normal, wi) > 0)) return media;
     front ? media.enter(x.material) : media.leave();
     return media;
   }

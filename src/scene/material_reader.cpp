@@ -56,10 +56,23 @@ class MaterialReader {
       throw InputError(reader.find("anisotropy")->key_place,
                        "\"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "
                        "lobes; leave one of them out");
+    check_thin(reader);
     return std::move(material_);
   }
 
  private:
+  /// A thin wall is smooth and has no inside.
+  void check_thin(const ObjectReader& reader) const {
+    if (!material_.thin) return;
+    for (const char* key : {"roughness", "alpha", "absorption"})
+      if (const JsonNode* found = reader.find(key))
+        throw InputError(
+            found->key_place,
+            fmt::format("\"{}\" cannot go with \"thin\": a thin wall is smooth, and has no inside; "
+                        "tint what passes by \"transmittance\"",
+                        key));
+  }
+
   void read_key(const MaterialKey& key, const JsonNode& node) {
     const bool is_map = key.parameter && node.type == JsonNode::Type::object && !is_index(key, node);
     if (key.name == "absorption" && node.type == JsonNode::Type::object) return read_absorption(node);

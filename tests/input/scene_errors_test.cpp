@@ -260,6 +260,11 @@ const std::vector<Case> cases = {
             R"(  "materials": { "a": { "type": "conductor", "reflectance": "aluminum" } },)",
             "s.json:2:61: unknown metal 'aluminum'; did you mean 'aluminium'?"),
     in_line(
+        "a rough thin wall",
+        R"(  "materials": { "a": { "type": "dielectric", "thin": true, "roughness": 0.2 } },)",
+        "s.json:2:61: \"roughness\" cannot go with \"thin\": a thin wall is smooth, and has no inside; tint "
+        "what passes by \"transmittance\""),
+    in_line(
         "brushed metal with tables of round lobes",
         R"(  "materials": { "a": { "type": "conductor", "anisotropy": 0.5, "multiple_scattering": true } },)",
         "s.json:2:46: \"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "

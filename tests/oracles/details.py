@@ -76,6 +76,11 @@ CASES = {
         {"type": "dielectric", "ior": 1.5, "alpha": 0.3, "absorption": ABSORPTION},
         None,
         lambda: {"type": "roughdielectric", "distribution": "ggx", "alpha": 0.3, "int_ior": 1.5, "ext_ior": 1.0}),
+    "pane": (
+        {"type": "dielectric", "ior": 1.5, "thin": True, "transmittance": [0.9, 0.6, 0.3]},
+        None,
+        lambda: {"type": "thindielectric", "int_ior": 1.5, "ext_ior": 1.0,
+                 "specular_transmittance": {"type": "rgb", "value": [0.9, 0.6, 0.3]}}),
 }
 
 

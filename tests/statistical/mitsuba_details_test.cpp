@@ -38,7 +38,7 @@ void check(const std::string& file, const Expected& expected, Way way) {
 
 const std::string golden = std::string(CASTRAY_ROOT) + "/tests/golden/";
 const std::vector<std::string> details{"colours", "holes", "normals", "heights", "metal", "mirror"},
-    without_images{"index", "glass", "pair", "brushed"},
+    without_images{"index", "glass", "pane", "pair", "brushed"},
     lights{"environment", "point", "spot", "directional", "emission", "instances"};
 
 /// By every way of rendering: 18 tests a scene.
@@ -61,7 +61,8 @@ TEST_CASE("images on materials are as Mitsuba shows them, by every way of render
 }
 
 TEST_CASE(
-    "metal by its index, brushed metal, glass that absorbs and pairs of materials are as Mitsuba shows them",
+    "metal by its index, brushed metal, glass that absorbs, panes and pairs of materials are as Mitsuba "
+    "shows them",
     "[statistical]") {
   for (const std::string& name : without_images) {
     const std::string file = golden + "details/" + name;

@@ -276,6 +276,25 @@ TEST_CASE("a lobe that is not round is wide along x", "[bsdf]") {
     for (std::uint64_t i = 0; i < 1000; ++i) CHECK(draw(table[0], wo, 7, i).weight.x <= 1 + 1e-9);
 }
 
+TEST_CASE("a pane reflects what its two surfaces do, and the rest goes straight on", "[bsdf]") {
+  Material m = dielectric(0);
+  m.thin = true, m.transmittance = {1, 0.5, 0.25};
+  const MaterialTable<double> table({m});
+  for (const double theta : {0.1, 1.0, 1.5, 2.0, 3.0}) {  // on either side
+    const Vec3d wo = direction(theta, 0.7);
+    const double f = fresnel_dielectric(std::abs(wo.z), 1.5), passed = (1 - f) * (1 - f) / (1 - f * f);
+    const auto mirrored = table[0].sample(wo, 0.999 * (1 - passed), {0.3, 0.4}),
+               straight = table[0].sample(wo, 1.001 * (1 - passed), {0.3, 0.4});
+    CHECK(length(straight.wi + wo) < 1e-12);
+    CHECK(length(mirrored.wi - Vec3d(-wo.x, -wo.y, wo.z)) < 1e-12);
+    CHECK(straight.pdf == Approx(passed));
+    CHECK(mirrored.pdf == Approx(1 - passed));
+    CHECK(straight.weight.y == 0.5);
+    CHECK(mirrored.weight.y == 1);
+    CHECK((straight.eta2 == 1 && straight.specular && mirrored.specular));
+  }
+}
+
 TEST_CASE("a metal's reflectance follows Fresnel's equations at each angle", "[bsdf]") {
   // Without absorption it is glass; from within, total reflection.
   for (const double eta : {1.5, 1 / 1.5})
