@@ -68,24 +68,29 @@ struct Material {
   Vec3d k{0, 0, 0};                  ///< green and blue light; eta 0: the reflectance is constant
   Vec3d transmittance{1, 1, 1};      ///< dielectric: tint of what passes through the surface
   Vec3d ke{0, 0, 0};                 ///< emitted radiance
-  Vec3d absorption{0, 0, 0};         ///< dielectric: inside it, over a unit of length of the files
-  double alpha = 0;                  ///< GGX width; 0 is perfectly smooth
+  Vec3d absorption{0, 0, 0};  ///< dielectric, principled: inside it, over a unit of length of the files
+  double alpha = 0;           ///< GGX width; 0 is perfectly smooth
   /// Conductor, in [0,0.99]: where it is a, the width is alpha / sqrt(1 - a) in the direction in which u
   /// grows, turned by so many degrees towards that of v, and alpha sqrt(1 - a) across it.
   double anisotropy = 0, anisotropy_rotation = 0;
   double metallic = 0;             ///< principled, [0,1]: the metal's share
+  double transmission = 0;         ///< principled, [0,1]: the share of what is no metal that is glass
   double sheen = 0;                ///< principled, [0,1]
   double clearcoat = 0;            ///< principled, [0,1]: the share that the coat covers
   double clearcoat_roughness = 0;  ///< principled, [0,1]
   double coverage = 1;             ///< [0,1]: the share of the surface that is there
   bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
-  double ior = 1.5;   ///< dielectric: index inside (where the normal points away from) over outside
+  double ior = 1.5;   ///< dielectric, glass of principled: index inside (where the normal points away from)
+                      ///< over outside
   bool thin = false;  ///< dielectric: two such surfaces close together, and nothing inside
   bool two_sided_emission = false;
   bool multiple_scattering = false;  ///< metals: add what facets reflect more than once
   bool vertex_colors = false;        ///< Scene::colors multiply kd where the triangle has them
-  int back = -1;  ///< index into Scene::materials of what the surface is where the normal points away from;
-                  ///< -1: the same on both sides
+  int back = -1;   ///< index into Scene::materials of what the surface is where the normal points away from;
+                   ///< -1: the same on both sides
+  int glass = -1;  ///< principled: index into Scene::materials of the dielectric that its surface is at some
+                   ///< points, by glass_share(); SceneBuilder makes it; -1: none
+  bool is_glass_share = false;   ///< it is the `glass` of another material
   bool emits_backwards = false;  ///< `ke` leaves on the side that the normal points away from alone: it is
                                  ///< the `back` of a pair
 
@@ -123,6 +128,9 @@ struct Material {
   bool bounds_body() const { return type == MaterialType::dielectric && !thin; }
   bool absorbs() const { return bounds_body() && max_component(absorption) > 0; }
   bool has_back() const { return back >= 0; }
+  bool has_glass() const { return glass >= 0; }
+  /// The share of its points at which it is `glass`, each by itself.
+  double glass_share() const { return has_glass() ? transmission * (1 - metallic) : 0; }
   bool has_index() const { return eta.x > 0; }
   bool emits() const { return ke.x > 0 || ke.y > 0 || ke.z > 0; }
   /// Whether it emits on the side that the normal points to, or on the other.

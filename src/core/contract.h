@@ -71,10 +71,21 @@ CASTRAY_CONTRACT U owen_hash(U v, U seed) {
 
 // Partial coverage.
 
+/// The world of a path of its own: that of this sample of the pixel with this key.
+CASTRAY_CONTRACT uint32_t path_world(uint32_t key, uint64_t sample) {
+  return hash_combine(hash_combine(key, static_cast<uint32_t>(sample)), static_cast<uint32_t>(sample >> 32));
+}
+
 /// What decides, against the coverage there, whether a point of a triangle is there in a world.
 CASTRAY_CONTRACT float presence_number(uint32_t world, uint32_t triangle, float b1, float b2) {
   const uint32_t on_triangle = hash_combine(hash_combine(world, triangle), __builtin_bit_cast(uint32_t, b1));
   return static_cast<float>(hash_combine(on_triangle, __builtin_bit_cast(uint32_t, b2)) >> 8) * 0x1p-24f;
+}
+
+/// What decides, against the share, whether a point of a triangle is glass in a world; independent of
+/// presence_number.
+CASTRAY_CONTRACT float glass_number(uint32_t world, uint32_t triangle, float b1, float b2) {
+  return presence_number(hash_combine(world, 0x61a55u), triangle, b1, b2);
 }
 
 // Russian roulette.

@@ -27,10 +27,8 @@ float Coverage::share_there(std::uint32_t triangle, float b1, float b2) const {
 }
 
 template <class T>
-HitFilter<T> Coverage::world_of(std::uint32_t key, std::uint64_t sample) const {
+HitFilter<T> Coverage::there_in(std::uint32_t world) const {
   if (partial_.empty()) return {};
-  const std::uint32_t low = hash_combine(key, static_cast<std::uint32_t>(sample));
-  const std::uint32_t world = hash_combine(low, static_cast<std::uint32_t>(sample >> 32));
   return [this, world](const Hit<T>& hit) {
     if (!is_partial(hit.triangle)) return true;
     const bool in_scene = hit.instance == Scene::no_index;
@@ -40,7 +38,7 @@ HitFilter<T> Coverage::world_of(std::uint32_t key, std::uint64_t sample) const {
 
 template bool Coverage::is_there(std::uint32_t, std::uint32_t, float, float) const;
 template bool Coverage::is_there(std::uint32_t, std::uint32_t, double, double) const;
-template HitFilter<float> Coverage::world_of(std::uint32_t, std::uint64_t) const;
-template HitFilter<double> Coverage::world_of(std::uint32_t, std::uint64_t) const;
+template HitFilter<float> Coverage::there_in(std::uint32_t) const;
+template HitFilter<double> Coverage::there_in(std::uint32_t) const;
 
 }  // namespace castray

@@ -33,10 +33,10 @@ class Coverage {
   /// The share of the surface that is there at that point.
   float share_there(std::uint32_t triangle, float b1, float b2) const;
 
-  /// Which hits count for the path of this sample of the pixel with this key: each path has a world of its
-  /// own, and in it each instance. The filter must not outlive this.
+  /// Which hits count in a path's world, where each instance has a world of its own. The filter must not
+  /// outlive this.
   template <class T>
-  HitFilter<T> world_of(std::uint32_t key, std::uint64_t sample) const;
+  HitFilter<T> there_in(std::uint32_t world) const;
 
  private:
   const Scene& scene_;

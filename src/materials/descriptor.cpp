@@ -91,6 +91,24 @@ MaterialKey roughness_key() {
           .text = "The square root of alpha."};
 }
 
+MaterialKey ior_key() {
+  return {.name = "ior",
+          .kind = MaterialKey::Kind::number,
+          .field = &Material::ior,
+          .range = index_range,
+          .text = "Index of refraction inside over outside [1.5]."};
+}
+
+MaterialKey absorption_key() {
+  return {.name = "absorption",
+          .kind = MaterialKey::Kind::color,
+          .field = &Material::absorption,
+          .range = {.least = 0, .greatest = float_range.greatest},
+          .text =
+              "Inside, over a unit of length: e^-absorption is what light keeps; or the colour that is "
+              "left after a distance [0, 0, 0]."};
+}
+
 MaterialKey multiple_scattering_key() {
   return {.name = "multiple_scattering",
           .kind = MaterialKey::Kind::flag,

@@ -60,6 +60,10 @@ MaterialKey vertex_colors_key();
 MaterialKey alpha_key();
 MaterialKey roughness_key();
 
+/// Of glass, and of what is glass in part.
+MaterialKey ior_key();
+MaterialKey absorption_key();
+
 /// Of metals whose facets reflect light more than once.
 MaterialKey multiple_scattering_key();
 

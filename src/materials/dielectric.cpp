@@ -2,6 +2,16 @@
 
 namespace castray {
 
+namespace {
+
+MaterialKey ior_key_told() {
+  MaterialKey key = ior_key();
+  key.brief = true;
+  return key;
+}
+
+}  // namespace
+
 const MaterialDescriptor& dielectric_descriptor() {
   static const MaterialDescriptor descriptor{
       .type = MaterialType::dielectric,
@@ -12,12 +22,7 @@ const MaterialDescriptor& dielectric_descriptor() {
       .formula =
           "reflection and refraction, smooth or through facets (Walter et al. 2007); `thin`: 2 F / (1 + F) "
           "is reflected, the rest goes straight on",
-      .keys = with_common_keys({{.name = "ior",
-                                 .kind = MaterialKey::Kind::number,
-                                 .field = &Material::ior,
-                                 .range = index_range,
-                                 .text = "Index of refraction inside over outside [1.5].",
-                                 .brief = true},
+      .keys = with_common_keys({ior_key_told(),
                                 {.name = "transmittance",
                                  .kind = MaterialKey::Kind::color,
                                  .field = &Material::transmittance,
@@ -30,12 +35,7 @@ const MaterialDescriptor& dielectric_descriptor() {
                                  .field = &Material::thin,
                                  .text = "A smooth pane, of two surfaces and nothing inside: what passes "
                                          "is not bent [false]."},
-                                {.name = "absorption",
-                                 .kind = MaterialKey::Kind::color,
-                                 .field = &Material::absorption,
-                                 .range = {.least = 0, .greatest = float_range.greatest},
-                                 .text = "Inside, over a unit of length: e^-absorption is what light keeps; "
-                                         "or the colour that is left after a distance [0, 0, 0]."},
+                                absorption_key(),
                                 roughness_key(),
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {

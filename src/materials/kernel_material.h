@@ -82,6 +82,8 @@ struct KernelMaterial {
   uint32_t clearcoat_albedo;  ///< principled: likewise
   float clearcoat_rows;
   uint32_t back;        ///< what it is where the normal points away from: offset in floats of that record
+  uint32_t glass;       ///< what it is at some points: offset of that record
+  float glass_share;    ///< of points; 0: none
   uint32_t detail;      ///< index + 1 into MaterialTables::details, or 0
   float light_density;  ///< of a light point on this material by light sampling, per area
 };
@@ -142,8 +144,9 @@ struct MaterialTables {
   const KernelMaterial* materials;
   const KernelDetail* details;
   const KernelAlbedo* albedos;
-  /// `materials` where one has a complex index, absorbs, or has another back; else null.
-  const KernelMaterial *indices, *absorbing, *pairs;
+  /// `materials` where one has a complex index, absorbs, has another back, or is glass at some points; else
+  /// null.
+  const KernelMaterial *indices, *absorbing, *pairs, *glass;
   bool filtered;   ///< whether a map reads the pixels' footprints
   bool stretched;  ///< whether some material has trait_stretched; likewise
   bool scatters_again;

@@ -60,6 +60,8 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   if (m.bounds_body()) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
   k.back = static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : materials.size()) *
            material_floats;
+  k.glass = static_cast<std::uint32_t>(m.has_glass() ? m.glass : 0) * material_floats;
+  k.glass_share = static_cast<float>(m.glass_share());
   k.type = static_cast<std::uint32_t>(m.type);
   k.traits = traits_of(m);
   auto values = SurfaceValues<double>(m).value;
@@ -131,6 +133,7 @@ MaterialTables KernelMaterials::tables() const {
           .pairs = where_any([this](const KernelMaterial& m) {
             return m.back != static_cast<std::uint32_t>(&m - materials.data()) * material_floats;
           }),
+          .glass = where_any([](const KernelMaterial& m) { return m.glass_share > 0; }),
           .filtered = filtered_,
           .stretched = has_any(trait_stretched),
           .scatters_again = has_any(trait_scatters_again)};

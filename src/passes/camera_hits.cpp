@@ -42,11 +42,12 @@ FirstHit CameraHits::at(int x, int y, std::uint64_t sample) const {
   const CameraRay from_camera =
       camera_sample(camera, x, y, width_, height_, options_.jitter, draw(PathBlocks::camera),
                     [&] { return draw(PathBlocks::lens); });
-  const Path path{key, sample, coverage_.world_of<float>(key, sample)};
+  const std::uint32_t world = path_world(key, sample);
+  const Path path{key, sample, world, coverage_.there_in<float>(world)};
   const Ray<float> ray{Vec3f(from_camera.origin), Vec3f(normalize(from_camera.direction))};
   const Hit<float> hit = bvh_.closest(ray, path.there);
   if (!hit.found()) return {};
-  const Surface<float> x0 = surfaces_.at(hit, ray);
+  const Surface<float> x0 = surfaces_.at(hit, ray, world);
   FirstHit first{hit.triangle, appearance(x0, hit), scene_.to_world(Vec3d(x0.p)), 0, {}};
   const Vec3d from_eye = Vec3d(x0.p) - camera.position;
   first.depth = scene_.unit * (camera.projection == Projection::panorama ? length(from_eye)
@@ -80,7 +81,7 @@ Appearance CameraHits::behind_mirrors(Surface<float> x, Hit<float> hit, const Pa
     const Ray<float> ray{segments_.origin(x, wi), wi};
     hit = bvh_.closest(ray, path.there);
     if (!hit.found()) return {};
-    x = surfaces_.at(hit, ray);
+    x = surfaces_.at(hit, ray, path.world);
   }
   const Appearance seen = appearance(x, hit);
   return {seen.albedo * tint, seen.normal};

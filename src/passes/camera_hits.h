@@ -44,6 +44,7 @@ class CameraHits {
   struct Path {
     std::uint32_t key;
     std::uint64_t sample;
+    std::uint32_t world;
     HitFilter<float> there;
   };
   Vec3f albedo(const Surface<float>& x, const Hit<float>& hit) const;

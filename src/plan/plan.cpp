@@ -28,7 +28,7 @@ int edge_samples(const SceneNeeds& needs, const RenderOptions& options) {
 }
 
 bool use_list(const SceneNeeds& needs, const RenderOptions& options) {
-  if (needs.instances > 0 || needs.textures || needs.smooth_normals || needs.coverage)
+  if (needs.instances > 0 || needs.textures || needs.smooth_normals || needs.coverage || needs.glass_shares)
     return false;  // facets have no barycentrics
   return options.accel == AccelKind::list ||
          (options.accel == AccelKind::automatic && needs.triangles <= longest_list);

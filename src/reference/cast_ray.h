@@ -61,7 +61,8 @@ class CastRay {
   /// Radiance of one camera sample of pixel (x,y) of a width x height image; adds the rays traced to `rays`.
   Vec3<T> sample_pixel(int x, int y, int width, int height, std::uint64_t sample, std::uint64_t& rays) const {
     Path path{.key = pixel_key(x, y, options_.seed), .sample = sample};
-    path.there = coverage_.world_of<T>(path.key, sample);
+    path.world = path_world(path.key, sample);
+    path.there = coverage_.there_in<T>(path.world);
     const std::array<float, 4> u = draw(path, PathBlocks::camera);
     path.light_u = {T(u[2]), T(u[3])};
     const auto lens = [&] { return draw(path, PathBlocks::lens); };
@@ -82,6 +83,7 @@ class CastRay {
     Vec3<T> throughput{1};  ///< of radiance without the scale of refractions: for roulette only
     Point2<T> light_u{};    ///< for the light point of this vertex
     std::uint64_t rays = 0;
+    std::uint32_t world = 0;              ///< what it meets is decided in
     HitFilter<T> there{};                 ///< which hits count
     Media media{};                        ///< that the path's last segment is in
     std::optional<PixelView<T>> pixel{};  ///< of the camera's ray, where maps filter
@@ -105,7 +107,7 @@ class CastRay {
     ++path.rays;
     const Hit<T> hit = accel_.closest(ray, path.there);
     if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless);
-    Surface<T> x = surfaces_.at(hit, ray, path.vertex == 0 ? path.pixel : std::nullopt);
+    Surface<T> x = surfaces_.at(hit, ray, path.world, path.vertex == 0 ? path.pixel : std::nullopt);
     segments_.place(x, hit, ray);
     if (bounds_body(x) && dot(x.normal, x.to_viewer) < 0) path.media.find(x.material);
     const Vec3<T> transmittance = kept(path.media, hit.t);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/contract.h"
 #include "core/error_bounds.h"
 #include "core/frame.h"
 #include "geometry/placement.h"
@@ -47,15 +48,17 @@ class Surfaces {
   }
 
   /// The surface that `ray`, of unit direction, meets at `hit`. `pixel`: what the pixel of a camera's ray
-  /// sees.
-  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, const std::optional<PixelView<T>>& pixel = {}) const {
-    return hit.instance == Scene::no_index ? at(hit, ray, InPlace(), pixel)
-                                           : at(hit, ray, places_[hit.instance], pixel);
+  /// sees. `world`: the path's, which decides what is glass (glass_number).
+  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, std::uint32_t world,
+                const std::optional<PixelView<T>>& pixel = {}) const {
+    return hit.instance == Scene::no_index
+               ? at(hit, ray, world, InPlace(), pixel)
+               : at(hit, ray, hash_combine(world, hit.instance), places_[hit.instance], pixel);
   }
 
  private:
   template <class Placement>
-  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, const Placement& placement,
+  Surface<T> at(const Hit<T>& hit, const Ray<T>& ray, std::uint32_t world, const Placement& placement,
                 const std::optional<PixelView<T>>& pixel) const {
     const Index3& t = scene_.triangles[hit.triangle];
     const TrianglePoint<T> point =
@@ -63,8 +66,10 @@ class Surfaces {
                                           Vec3<T>(scene_.positions[t[2]]), hit.b1, hit.b2));
     const Vec3<T> normal = placement.normal(normals_[hit.triangle]);
     const Vec3<T> to_viewer = -ray.direction;
-    const std::uint16_t material =
-        scene_.on_side(scene_.triangle_material[hit.triangle], dot(normal, to_viewer) > 0);
+    const float number =
+        glass_number(world, hit.triangle, static_cast<float>(hit.b1), static_cast<float>(hit.b2));
+    const std::uint16_t material = scene_.at_point(
+        scene_.on_side(scene_.triangle_material[hit.triangle], dot(normal, to_viewer) > 0), number);
     const Material& m = scene_.materials[material];
     const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
     const Frame<T> frame =

@@ -43,7 +43,8 @@ Source read_gltf_source(const GltfDocument& document, WarningList warnings) {
         return std::string(embedded_image(document, static_cast<std::size_t>(image)));
       }};
   for (std::size_t m = 0; m < source.scene.materials.size(); ++m)
-    source.materials[source.scene.materials[m].name] = static_cast<std::uint16_t>(m);
+    if (!source.scene.materials[m].is_glass_share)  // which follows from another
+      source.materials[source.scene.materials[m].name] = static_cast<std::uint16_t>(m);
   for (const std::string& name : camera_names(document, nodes))
     source.cameras[name] = camera_json(document, nodes.cameras[source.cameras.size()]);
   WarningList told;  // by scene_of_gltf
@@ -111,8 +112,9 @@ class SceneWriter {
     if (!source_.lights.empty()) json["lights"] = source_.lights;
     const std::vector<std::string> names = material_names();
     for (std::size_t m = 0; m < names.size(); ++m)
-      json["materials"][names[m]] =
-          material_json(scene.materials[m], scene, [this](int texture) { return image_path(texture); });
+      if (!scene.materials[m].is_glass_share)
+        json["materials"][names[m]] =
+            material_json(scene.materials[m], scene, [this](int texture) { return image_path(texture); });
     Json mesh = {{source_.mesh_key, relative(input_)}};
     if (source_.materials.size() == 1 && source_.materials.contains(""))
       mesh["material"] = names[source_.materials.at("")];

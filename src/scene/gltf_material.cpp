@@ -178,7 +178,7 @@ class GltfMaterialReader {
     set_specular();
     set_sheen();
     set_clearcoat();
-    const bool is_layered = out_.sheen > 0 || out_.clearcoat > 0;
+    const bool is_layered = out_.sheen > 0 || out_.clearcoat > 0 || out_.transmission > 0;
     const bool is_coated = out_.ks != Vec3d();
     out_.type = out_.metallic > 0 || is_layered ? MaterialType::principled
                 : is_coated                     ? MaterialType::microfacet
@@ -191,31 +191,45 @@ class GltfMaterialReader {
     return n > 0 ? std::min(n, index_range.greatest) : 1.5;
   }
 
-  /// Glass, where most of the light passes.
+  /// Whether it is glass: where most of the light passes, or all of what a share lets pass otherwise.
   bool set_transmission() {
     const tinygltf::Value* transmission = find_extension(m_.extensions, "KHR_materials_transmission");
     const double share = unit(number_in(transmission, "transmissionFactor", 0), "transmissionFactor");
     if (share == 0) return false;
+    const tinygltf::Value* volume = find_extension(m_.extensions, "KHR_materials_volume");
+    const bool is_solid = number_in(volume, "thicknessFactor", 0) > 0;
+    const bool has_texture = texture_use(transmission, "transmissionTexture").used();
+    const bool has_metal_image = m_.pbrMetallicRoughness.metallicFactor > 0 && textures_.surface.used();
+    const bool may_blend = !has_texture && !has_metal_image && !out_.emits();
+    if (is_solid && share < 1 && may_blend) {
+      set_absorption(volume);
+      out_.transmission = share;
+      out_.ior = ior();
+      return false;
+    }
     constexpr double glass_from = 0.5;
-    if (share < 1 || texture_use(transmission, "transmissionTexture").used())
+    if (share < 1 || has_texture)
       warn(fmt::format("transmission is all or nothing: it is {}",
                        share < glass_from ? "left out" : "taken for 1"));
     if (share < glass_from) return false;
-    const tinygltf::Value* volume = find_extension(m_.extensions, "KHR_materials_volume");
-    if (number_in(volume, "thicknessFactor", 0) > 0)
+    if (is_solid)
       set_solid_glass(volume);
     else
       set_thin_wall();
     return true;
   }
 
-  void set_solid_glass(const tinygltf::Value* volume) {
+  void set_absorption(const tinygltf::Value* volume) {
     const double distance = number_in(volume, "attenuationDistance", 0);
     const Vec3d color = vector_in(volume, "attenuationColor", Vec3d(1));
     // black would take an infinite coefficient
     const auto clamped = [](double c) { return std::clamp(c, 1e-6, 1.0); };
     if (distance > 0)
       out_.absorption = absorption_of(Vec3d(clamped(color.x), clamped(color.y), clamped(color.z)), distance);
+  }
+
+  void set_solid_glass(const tinygltf::Value* volume) {
+    set_absorption(volume);
     out_.type = MaterialType::dielectric;
     out_.ior = ior();
     out_.transmittance = out_.kd;

@@ -57,6 +57,7 @@ class MaterialReader {
                        "\"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "
                        "lobes; leave one of them out");
     check_thin(reader);
+    check_glass_share(reader);
     return std::move(material_);
   }
 
@@ -71,6 +72,16 @@ class MaterialReader {
             fmt::format("\"{}\" cannot go with \"thin\": a thin wall is smooth, and has no inside; "
                         "tint what passes by \"transmittance\"",
                         key));
+  }
+
+  /// One share counts for the whole surface, and a lamp's light would have to leave both parts.
+  void check_glass_share(const ObjectReader& reader) const {
+    if (!(material_.transmission > 0)) return;
+    const std::string advice =
+        " cannot go with \"transmission\"; give a part of the mesh a material of its own";
+    if (material_.map(SurfaceParameter::metallic).used())
+      throw InputError(reader.find("metallic")->key_place, "an image of \"metallic\"" + advice);
+    if (material_.emits()) throw InputError(reader.find("ke")->key_place, "\"ke\"" + advice);
   }
 
   void read_key(const MaterialKey& key, const JsonNode& node) {

@@ -26,11 +26,10 @@ std::string name_of_side(std::string_view pair, const JsonNode& side) {
 void check_sides(const JsonNode& front_node, const Material& front, const JsonNode& back_node,
                  const Material& back) {
   for (const auto& [node, side] : {std::pair(&front_node, &front), std::pair(&back_node, &back)})
-    if (side->type == MaterialType::dielectric)
+    if (side->type == MaterialType::dielectric || side->transmission > 0)
       throw InputError(
           node->place,
-          fmt::format("\"{}\" cannot be a dielectric, through which light gets to the other side",
-                      node->key));
+          fmt::format("\"{}\" cannot be glass, through which light gets to the other side", node->key));
     else if (side->emits() && side->two_sided_emission)
       throw InputError(
           node->place,

@@ -23,6 +23,7 @@ SceneNeeds needs_of(const Scene& scene) {
     needs.glossy |= (traits_of(m) & trait_directional) && (traits_of(m) & trait_shareable);
     needs.bent_normals |= (traits_of(m) & trait_bent) != 0;
     needs.coverage |= m.may_have_holes();
+    needs.glass_shares |= m.has_glass();
     needs.types.insert(m.type);
   }
   return needs;

@@ -18,6 +18,7 @@ struct SceneNeeds {
   bool glossy = false;        ///< a surface that reflects other than by Lambert's model, and not as a mirror
   bool bent_normals = false;  ///< by normal or bump maps
   bool coverage = false;      ///< surfaces of which only a share is there
+  bool glass_shares = false;  ///< surfaces that are glass at some points
   bool environment = false;
   std::size_t delta_lights = 0;
 };

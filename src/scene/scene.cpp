@@ -34,7 +34,10 @@ std::vector<bool> Scene::used_materials() const {
   std::vector<bool> used(materials.size());
   for (const std::uint16_t material : triangle_material) used[material] = true;
   for (std::size_t m = 0; m < used.size(); ++m)
-    if (used[m]) used[on_side(static_cast<std::uint16_t>(m), false)] = true;
+    if (used[m]) {
+      used[on_side(static_cast<std::uint16_t>(m), false)] = true;
+      if (materials[m].has_glass()) used[static_cast<std::size_t>(materials[m].glass)] = true;
+    }
   return used;
 }
 

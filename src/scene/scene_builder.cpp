@@ -427,7 +427,26 @@ void SceneBuilder::place_cameras() {
   scene.camera = scene.has_camera ? scene.cameras.front().camera : automatic_camera(scene);
 }
 
+void SceneBuilder::add_glass_shares() {
+  using Parameter = SurfaceParameter;
+  for (std::size_t i = 0, count = scene.materials.size(); i < count; ++i) {
+    Material glass = scene.materials[i];
+    if (glass.type != MaterialType::principled || !(glass.transmission > 0)) continue;
+    glass.name += " (glass)";
+    glass.type = MaterialType::dielectric;
+    glass.transmittance = glass.kd;
+    glass.map(Parameter::transmittance) = glass.map(Parameter::kd);
+    for (const Parameter p : {Parameter::kd, Parameter::ks, Parameter::metallic, Parameter::sheen,
+                              Parameter::clearcoat, Parameter::clearcoat_roughness})
+      glass.map(p) = {};
+    glass.vertex_colors = false;
+    glass.is_glass_share = true;
+    scene.materials[i].glass = add_material(std::move(glass));
+  }
+}
+
 Scene SceneBuilder::finish() {
+  add_glass_shares();
   make_objects_of_materials();
   expand_instances();
   if (instances_.empty()) objects_.clear();

@@ -79,6 +79,8 @@ class SceneBuilder {
   void join(Mesh& all, Mesh&& more) const;
   void add_to_scene(Mesh&& mesh);
   void make_objects_of_materials();
+  /// Materials for what of principled ones is glass.
+  void add_glass_shares();
   void expand_instances();
   void expand(const Mesh& object, const Transform& transform);
   /// Drops the degenerate triangles of a mesh and warns of them, in `file` where the mesh knows no place.

@@ -55,6 +55,16 @@ CASTRAY_INLINE Footprint footprint_at(const TriangleTable& triangles, const Plac
   return seen;
 }
 
+/// What materials are at these points, of which some are glass (glass_number).
+CASTRAY_INLINE Uint at_points(const KernelScene& scene, Uint material, uint32_t world,
+                              const SurfaceHit& hit) {
+  const Uint instance = hash_combine(hash_combine(Uint(world), Uint(0x61a55u)), hit.instance);
+  const Uint triangle = hash_combine(instance, hit.primitive);
+  const Uint key = hash_combine(hash_combine(triangle, as_uint(hit.b1)), as_uint(hit.b2));
+  const Mask is_glass = to_unit(key) < gather(scene.glass, &KernelMaterial::glass_share, material);
+  return select(is_glass, gather(scene.glass, &KernelMaterial::glass, material), material);
+}
+
 /// Path vertices at the hits. Rays that miss add the environment's radiance and end. `see_emission`: hits
 /// add emission. With `keep_misses` every path keeps its entry: a miss is a black vertex with normal
 /// (0,0,0). `from_light`: whatever side of the shading normal a path comes from, its vertex has that normal
@@ -79,6 +89,7 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
     const Mask front = towards < Float(0.f);
     Uint material = x.material * uint32_t{material_floats};
     if (scene.pairs) material = select(front, material, gather(scene.pairs, &KernelMaterial::back, material));
+    if (scene.glass) material = at_points(scene, material, c.world, at);
     const Vec facing = select(front, x.normal, -x.normal);
     const TrianglePlace place{primitive, b1, b2};
     Parameters<features> parameters = gather_parameters<features>(scene, material);

@@ -260,6 +260,10 @@ const std::vector<Case> cases = {
             R"(  "materials": { "a": { "type": "conductor", "reflectance": "aluminum" } },)",
             "s.json:2:61: unknown metal 'aluminum'; did you mean 'aluminium'?"),
     in_line(
+        "a lamp that is glass in part",
+        R"(  "materials": { "a": { "type": "principled", "transmission": 0.5, "ke": 2 } },)",
+        "s.json:2:67: \"ke\" cannot go with \"transmission\"; give a part of the mesh a material of its own"),
+    in_line(
         "a rough thin wall",
         R"(  "materials": { "a": { "type": "dielectric", "thin": true, "roughness": 0.2 } },)",
         "s.json:2:61: \"roughness\" cannot go with \"thin\": a thin wall is smooth, and has no inside; tint "

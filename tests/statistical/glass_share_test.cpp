@@ -1,0 +1,89 @@
+#include <catch2/catch.hpp>
+
+#include "castray_blocks.h"
+#include "instanced.h"
+
+using namespace castray;
+using namespace castray::test;
+
+// Principled materials of which a share is glass: the kernels against castRay in double precision, and
+// castRay against the parts. Each `check` has a false-alarm rate of 1e-4.
+
+namespace {
+
+/// As SceneBuilder makes it.
+std::uint16_t add_glazed(SceneSketch& sketch, double transmission, double alpha) {
+  Material m{.name = "glazed", .type = MaterialType::principled, .kd = {0.8, 0.6, 0.4}, .alpha = alpha};
+  m.ks = Vec3d(0.05);
+  m.metallic = 0.2;
+  m.clearcoat = 0.5;
+  m.transmission = transmission;
+  Material glass{.name = "glass", .type = MaterialType::dielectric, .transmittance = m.kd, .alpha = alpha};
+  glass.absorption = {0.5, 1, 2};
+  m.glass = sketch.add_material(glass);
+  return sketch.add_material(m);
+}
+
+/// A block on a floor, under a lamp and a sky.
+Scene block(double alpha) {
+  SceneSketch sketch;
+  const auto floor = sketch.add_material({.name = "floor", .kd = Vec3d(0.6)});
+  const auto lamp = sketch.add_material({.name = "lamp", .kd = Vec3d(0.2), .ke = {9, 8, 7}});
+  const auto glazed = add_glazed(sketch, 0.6, alpha);
+  sketch.add_quad({-1, -0.5f, 1}, {1, -0.5f, 1}, {1, -0.5f, -1}, {-1, -0.5f, -1}, floor);
+  sketch.add_quad({-.6f, 1, .5f}, {-.6f, 1, -.5f}, {.6f, 1, -.5f}, {.6f, 1, .5f}, lamp);
+  const auto corner = [](bool x, bool y, bool z) {
+    return Vec3f(x ? 0.4f : -0.4f, y ? 0.3f : -0.4f, z ? 0.35f : -0.35f);
+  };
+  const auto add_face = [&](Vec3f a, Vec3f b, Vec3f c, Vec3f d) { sketch.add_quad(a, b, c, d, glazed); };
+  add_face(corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1));
+  add_face(corner(1, 0, 0), corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0));
+  add_face(corner(1, 0, 1), corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1));
+  add_face(corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0));
+  add_face(corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0), corner(0, 1, 0));
+  add_face(corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1));
+  sketch.scene.environment = {0.2, 0.25, 0.3};
+  sketch.scene.camera = make_camera({0.6, 1, 2.2}, {0, 0, 0}, {0, 1, 0}, 40);
+  return sketch.scene;
+}
+
+/// The mean radiance of a sheet of which a share is glass, in front of a sky.
+Vec3d radiance_of_sheet(double transmission, const RenderOptions& options) {
+  SceneSketch sketch;
+  const auto glazed = add_glazed(sketch, transmission, 0.3);
+  sketch.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, glazed);
+  sketch.scene.environment = Vec3d(1);
+  sketch.scene.camera = make_camera({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 20);
+  Vec3d sum;
+  const Image image = render(sketch.scene, options).film.image();
+  for (const Vec3f& pixel : image.pixels) sum += Vec3d(pixel);
+  return sum / static_cast<double>(image.pixels.size());
+}
+
+}  // namespace
+
+TEST_CASE("kernels see what is glass in part as castRay does", "[statistical]") {
+  const Scene rough = block(0.3);
+  const Expected expected(rough);
+  expected.check_each_kernel(rough);
+  expected.check("plain", rough, plain(wavefront_options(8)));
+  expected.check("instances", as_instances(rough, kinds_of_places()), wavefront_options(4));
+  const Scene smooth = block(0);
+  const Expected expected_smooth(smooth);
+  expected_smooth.check("shared", smooth, wavefront_options(8));
+  expected_smooth.check_with("light paths", smooth, [](RenderOptions& o) { o.caustics = Switch::on; });
+}
+
+TEST_CASE("what is glass in part is the blend of its parts", "[statistical]") {
+  RenderOptions options = wavefront_options(4096, 1, 1);
+  options.rr = 1;
+  options.width = options.height = 8;
+  for (const Way& way : {Way{"castRay", as_reference(options)}, Way{"plain", plain(options)}}) {
+    CAPTURE(way.name);
+    // The share is that of what is no metal: 0.8.
+    const Vec3d opaque = radiance_of_sheet(0, way.options), half = radiance_of_sheet(0.5, way.options),
+                most = radiance_of_sheet(1, way.options);
+    for (int c = 0; c < 3; ++c) CHECK(half[c] == Approx((opaque[c] + most[c]) / 2).epsilon(0.003));
+    CHECK(most.z - opaque.z > 0.05);
+  }
+}
