@@ -25,7 +25,7 @@ const std::string orm_texel = png_file(1, 8, 2, {std::string("\x33\x66\xcc", 3)}
 Material material_of(GltfFile& file, const Json& material, bool well = true) {
   file.add_node({{"mesh", file.add_square(file.add("materials", material))}});
   const Scene scene = well ? read_gltf_well(file) : read_gltf_scene(file.glb());
-  REQUIRE(scene.materials.size() == 1);
+  REQUIRE(scene.materials.size() == (scene.materials[0].has_glass() ? 2 : 1));
   return scene.materials[0];
 }
 Material material_of(const Json& material, bool well = true) {
@@ -138,6 +138,17 @@ TEST_CASE("glass, clear coat, sheen, specular-glossiness and unlit") {
   CHECK(glass.absorption.x == Approx(0).margin(1e-12));
   CHECK(glass.absorption.y == Approx(std::log(2.) / 2));
   CHECK(glass.absorption.z > 5);
+
+  const Material half = material_of(
+      {{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1, 1}}, {"metallicFactor", 0.25}}},
+       {"extensions",
+        {{"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
+         {"KHR_materials_volume",
+          {{"thicknessFactor", 1}, {"attenuationDistance", 2}, {"attenuationColor", {1, 0.5, 1}}}},
+         {"KHR_materials_ior", {{"ior", 1.33}}}}}});
+  CHECK(half.type == MaterialType::principled);
+  CHECK((half.transmission == 0.5 && half.metallic == 0.25 && half.ior == 1.33));
+  CHECK(half.absorption.y == Approx(std::log(2.) / 2));
 
   GltfFile file;
   const int texture = file.add_texture(orm_texel);

@@ -303,6 +303,16 @@ TEST_CASE("a number stands for a grey, a metal's name for what it reflects strai
                  .absorption,
              Vec3d(std::log(2.), std::log(2.) / 2, 0));
   CHECK(material(R"("type": "conductor", "multiple_scattering": true)").materials[0].multiple_scattering);
+  CHECK(material(R"("type": "dielectric", "thin": true)").materials[0].thin);
+  // What of a material is glass is a material of its own.
+  const Scene scene =
+      material(R"("type": "principled", "kd": 0.7, "metallic": 0.2, "transmission": 0.5, "ior": 1.3)");
+  REQUIRE(scene.materials.size() == 2);
+  CHECK(scene.materials[0].glass == 1);
+  CHECK(scene.materials[0].glass_share() == Approx(0.4));
+  CHECK(scene.materials[1].type == MaterialType::dielectric);
+  CHECK(scene.materials[1].ior == 1.3);
+  CHECK(scene.materials[1].transmittance == Vec3d(0.7));
 }
 
 TEST_CASE("a light whose image is black everywhere is none") {
