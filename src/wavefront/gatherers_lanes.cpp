@@ -55,8 +55,8 @@ float greatest_gap(const Vertices& x, const float* place, int first, float low, 
   for (int b = 0; b < bins; ++b) lowest[b] = infinity, highest[b] = -infinity;
   for (int i = first; i < first + tile_pixels; ++i) {
     if (!is_on_surface(x, i)) continue;
-    int b = (int)((place[i] - low) * scale);
-    b = b < bins ? b : bins - 1;
+    const float f = (place[i] - low) * scale;  // NaN where the box is flat
+    const int b = f > 0 ? f < bins ? (int)f : bins - 1 : 0;
     lowest[b] = place[i] < lowest[b] ? place[i] : lowest[b];
     highest[b] = place[i] > highest[b] ? place[i] : highest[b];
   }
