@@ -63,13 +63,13 @@ CASTRAY_INLINE void thin(const VisibilityScratch& s, int n, int own, bool weight
   }
 }
 
-/// Visibility of the pixels `asked` by one shadow ray each. Where partial triangles may lie between, all are
-/// asked: they thin the light of the sender's own pixel, too, which found it by chance.
+/// Visibility of the pixels `asked` by one shadow ray each: all that partial triangles may lie before, as no
+/// shaft holds one. They thin the light of the sender's own pixel, too, which found it by chance.
 template <class Geometry, class AnySender>
 CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers& tile, uint64_t asked,
                                  VisibilityScratch& s, bool weights, Transfer& t) {
   const Geometry geometry = geometry_of<Geometry>(c);
-  const bool thins = geometry.thins() && asked == ~0ull;
+  const bool thins = geometry.thins();
   const Uint known((uint32_t)(thins ? -1 : y.own));
   int n = 0;
   for (int i = 0; i < tile_vectors; ++i) {

@@ -235,7 +235,7 @@ const std::vector<Case> cases = {
     in_line(
         "glass on one side",
         R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "dielectric" } } },)",
-        "s.json:2:86: \"back\" cannot be a dielectric, through which light gets to the other side"),
+        "s.json:2:86: \"back\" cannot be glass, through which light gets to the other side"),
     in_line(
         "a back that emits on both",
         R"(  "materials": { "a": { "type": "two_sided", "front": { "type": "diffuse" }, "back": { "type": "diffuse", "ke": 1, "two_sided_emission": true } } },)",
@@ -262,7 +262,7 @@ const std::vector<Case> cases = {
     in_line(
         "a lamp that is glass in part",
         R"(  "materials": { "a": { "type": "principled", "transmission": 0.5, "ke": 2 } },)",
-        "s.json:2:67: \"ke\" cannot go with \"transmission\"; give a part of the mesh a material of its own"),
+        "s.json:2:68: \"ke\" cannot go with \"transmission\"; give a part of the mesh a material of its own"),
     in_line(
         "a rough thin wall",
         R"(  "materials": { "a": { "type": "dielectric", "thin": true, "roughness": 0.2 } },)",

@@ -67,7 +67,7 @@ Mean radiance_of_sheet(double transmission, const RenderOptions& options) {
 TEST_CASE("kernels see what is glass in part as castRay does", "[statistical]") {
   const Scene rough = glazed_block(0.3);
   const Expected expected(rough);
-  expected.check_each_kernel(rough);
+  expected.check("shared", rough, wavefront_options(4));
   expected.check("plain", rough, plain(wavefront_options(8)));
   expected.check("instances", as_instances(rough, kinds_of_places()), wavefront_options(4));
   const Scene smooth = glazed_block(0);

@@ -69,12 +69,14 @@ struct ExpectedBlocks {
 /// probability (Wallace 1959). Blocks without any variance are left out.
 inline BlockScores block_scores(const std::vector<std::vector<double>>& renders,
                                 const std::vector<double>& expected, const std::vector<double>& variance) {
+  constexpr double rounding = 4e-6;  // of sums of floats, which is all that skies differ by
   BlockScores scores;
   const auto degrees = static_cast<double>(renders.size() - 1);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     Mean mean;
     for (const auto& render : renders) mean.add(render[i]);
-    const double error = std::sqrt(mean.error() * mean.error() + variance[i]);
+    const double noise = std::sqrt(mean.error() * mean.error() + variance[i]);
+    const double error = noise > 0 ? std::hypot(noise, rounding * expected[i]) : 0;
     if (!(error > 0)) continue;
     const double t = (mean.mean() - expected[i]) / error;
     const double z = (8 * degrees + 1) / (8 * degrees + 3) * std::sqrt(degrees * std::log1p(t * t / degrees));
