@@ -4,6 +4,7 @@
 #include "lights/covered_lights.h"
 #include "lights/delta_lights.h"
 #include "lights/mirrored_lights.h"
+#include "materials/descriptor.h"
 #include "materials/surface_values.h"
 
 namespace castray {
@@ -29,6 +30,12 @@ TriangleTable triangle_table(const Scene& scene, const std::vector<std::uint32_t
     table.color_corners = scene.triangle_colors.data()->data();
   }
   return table;
+}
+
+/// Whether light gets into some body: then a point may be seen from within it, and another from outside.
+bool transmits(const Scene& scene) {
+  return std::ranges::any_of(scene.materials,
+                             [](const Material& m) { return (traits_of(m) & trait_transmits) != 0; });
 }
 
 bool has_emission_images(const Scene& scene) {
@@ -96,8 +103,8 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
 
 void KernelSceneData::build_tree(const Scene& scene, BuildQuality quality, int threads) {
   const MeshView mesh = mesh_of(scene);
-  const ClosedSurface surface =
-      coverage.partial_triangles() ? ClosedSurface{} : closed_surface(mesh, threads);
+  const bool opaque = !coverage.partial_triangles() && !transmits(scene);
+  const ClosedSurface surface = opaque ? closed_surface(mesh, threads) : ClosedSurface{};
   const bool has_surface = std::ranges::find(surface.has, true) != surface.has.end();
   bvh = WideBvh::build(mesh, threads, quality, has_surface ? &surface : nullptr);
   rim = WideBvh::build({mesh.positions, surface.rim.data(), static_cast<std::uint32_t>(surface.rim.size())},

@@ -34,16 +34,7 @@ Scene glazed_block(double alpha) {
   const auto glazed = add_glazed(sketch, 0.6, alpha);
   sketch.add_quad({-1, -0.5f, 1}, {1, -0.5f, 1}, {1, -0.5f, -1}, {-1, -0.5f, -1}, floor);
   sketch.add_quad({-.6f, 1, .5f}, {-.6f, 1, -.5f}, {.6f, 1, -.5f}, {.6f, 1, .5f}, lamp);
-  const auto corner = [](bool x, bool y, bool z) {
-    return Vec3f(x ? 0.4f : -0.4f, y ? 0.3f : -0.4f, z ? 0.35f : -0.35f);
-  };
-  const auto add_face = [&](Vec3f a, Vec3f b, Vec3f c, Vec3f d) { sketch.add_quad(a, b, c, d, glazed); };
-  add_face(corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1));
-  add_face(corner(1, 0, 0), corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0));
-  add_face(corner(1, 0, 1), corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1));
-  add_face(corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0));
-  add_face(corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0), corner(0, 1, 0));
-  add_face(corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1));
+  sketch.add_cube(0.38, {0, -0.11, 0}, false, glazed);
   sketch.scene.environment = {0.2, 0.25, 0.3};
   sketch.scene.camera = make_camera({0.6, 1, 2.2}, {0, 0, 0}, {0, 1, 0}, 40);
   return sketch.scene;
