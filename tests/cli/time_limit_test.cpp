@@ -42,7 +42,7 @@ TEST_CASE(
   CHECK(o.stats["spp"] > 64);
   const double taken = read_film(folder / "x.film").samples_per_pixel();
   CHECK(o.stats["spp"] == taken);
-  CHECK(o.stats["paths"] == Approx(taken * 16 * 16).epsilon(0.05));
+  CHECK(o.stats["paths"] >= 0.95 * taken * 16 * 16);  // and those that the stop discards
   CHECK_THAT(o.run.err, Contains(" pixels, " + samples_text(taken) + " spp") && Contains("Render complete"));
   for (const char* file : {"x.png", "x.exr", "x.film"})
     CHECK(read_image(folder / file).metadata.at("castray:spp") == samples_text(taken));
