@@ -151,11 +151,6 @@ struct Scene {
     const Material& m = materials[material];
     return front || !m.has_back() ? material : static_cast<std::uint16_t>(m.back);
   }
-  /// What a material is at a point for which `number`, of [0,1), was drawn (glass_number).
-  std::uint16_t at_point(std::uint16_t material, double number) const {
-    const Material& m = materials[material];
-    return number < m.glass_share() ? static_cast<std::uint16_t>(m.glass) : material;
-  }
   /// Whether a triangle of this material emits on that side.
   bool emits_on(std::uint16_t material, bool front) const {
     return materials[on_side(material, front)].emits_on(front);

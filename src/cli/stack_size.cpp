@@ -4,6 +4,7 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "castray/error.h"
@@ -25,9 +26,11 @@ std::size_t own_stack_size() {
 
 void check_stack_size() {
   constexpr std::size_t least = 256 * 1024;  // twice what the deepest scenes were seen to take
-  std::size_t size = std::numeric_limits<std::size_t>::max();
+  std::size_t size = own_stack_size();       // of all threads, unless the environment says more of the others
+  if (std::getenv("OMP_STACKSIZE") || std::getenv("GOMP_STACKSIZE")) {
 #pragma omp parallel num_threads(2) reduction(min : size)
-  size = std::min(size, own_stack_size());
+    size = std::min(size, own_stack_size());
+  }
   if (size < least)
     throw InputError(fmt::format(
         "stacks of {} KiB are too small; set `ulimit -s` and OMP_STACKSIZE, if it is set, to {}K at least",

@@ -76,16 +76,28 @@ CASTRAY_CONTRACT uint32_t path_world(uint32_t key, uint64_t sample) {
   return hash_combine(hash_combine(key, static_cast<uint32_t>(sample)), static_cast<uint32_t>(sample >> 32));
 }
 
-/// What decides, against the coverage there, whether a point of a triangle is there in a world.
-CASTRAY_CONTRACT float presence_number(uint32_t world, uint32_t triangle, float b1, float b2) {
-  const uint32_t on_triangle = hash_combine(hash_combine(world, triangle), __builtin_bit_cast(uint32_t, b1));
-  return static_cast<float>(hash_combine(on_triangle, __builtin_bit_cast(uint32_t, b2)) >> 8) * 0x1p-24f;
+/// Of a point of a triangle in a world; b1 and b2 by their bits.
+template <class U>
+CASTRAY_CONTRACT U point_hash(U world, U triangle, U b1, U b2) {
+  return hash_combine(hash_combine(hash_combine(world, triangle), b1), b2);
 }
 
-/// What decides, against the share, whether a point of a triangle is glass in a world; independent of
-/// presence_number.
+/// What decides, against the coverage there, whether a point of a triangle is there in a world.
+CASTRAY_CONTRACT float presence_number(uint32_t world, uint32_t triangle, float b1, float b2) {
+  const uint32_t hash =
+      point_hash(world, triangle, __builtin_bit_cast(uint32_t, b1), __builtin_bit_cast(uint32_t, b2));
+  return static_cast<float>(hash >> 8) * 0x1p-24f;
+}
+
+/// The world that decides which points are glass, independently of those that are there.
+template <class U>
+CASTRAY_CONTRACT U glass_world(U world) {
+  return hash_combine(world, U(0x61a55u));
+}
+
+/// What decides, against the share, whether a point of a triangle is glass in a world.
 CASTRAY_CONTRACT float glass_number(uint32_t world, uint32_t triangle, float b1, float b2) {
-  return presence_number(hash_combine(world, 0x61a55u), triangle, b1, b2);
+  return presence_number(glass_world(world), triangle, b1, b2);
 }
 
 // Russian roulette.

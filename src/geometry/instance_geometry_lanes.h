@@ -41,7 +41,7 @@ class InstanceGeometry {
 
   CASTRAY_INLINE void occluded(const ShadowBatch& rays) const { instances_occluded(tree_, there(), rays); }
 
-  CASTRAY_INLINE bool thins() const { return there_.partial.triangles && there_.partial.met_once; }
+  CASTRAY_INLINE bool thins() const { return there_.thins(); }
 
   CASTRAY_INLINE Placed placement(const SurfaceHit& hit) const { return {{tree_.instances, hit.instance}}; }
 

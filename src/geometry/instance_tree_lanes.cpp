@@ -65,8 +65,7 @@ void instances_closest(const InstanceTree& tree, const PartlyThere* there, const
 void instances_occluded(const InstanceTree& tree, const PartlyThere* there, const ShadowBatch& rays) {
   if (!there) return find_occluded(tree, AllThere{}, rays);
   if (!rays.kept) return find_occluded(tree, *there, rays);
-  for (uint32_t i = 0; i < rays.count; ++i) rays.kept[i] = 1;
-  find_occluded(tree, Thinning{there->partial, rays.kept}, rays);
+  find_occluded(tree, begin_thinning(there->partial, rays), rays);
 }
 
 }  // namespace castray::CASTRAY_ISA

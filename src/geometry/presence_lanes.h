@@ -33,6 +33,9 @@ struct PartlyThere {
   const PartialTriangles& partial;
   uint32_t world;
 
+  /// Whether shadow rays tell what partial triangles leave of their light (ShadowBatch::kept).
+  CASTRAY_INLINE bool thins() const { return partial.triangles && partial.met_once; }
+
   CASTRAY_INLINE PartlyThere from(uint32_t /*ray*/) const { return *this; }
   CASTRAY_INLINE PartlyThere in(uint32_t instance) const { return {partial, hash_combine(world, instance)}; }
   CASTRAY_INLINE bool operator()(uint32_t /*ray*/, uint32_t triangle, float b1, float b2) const {
@@ -80,5 +83,11 @@ struct Thinning {
     return !(kept[ray] > 0);
   }
 };
+
+/// That of rays which have met nothing.
+CASTRAY_INLINE Thinning begin_thinning(const PartialTriangles& partial, const ShadowBatch& rays) {
+  for (uint32_t i = 0; i < rays.count; ++i) rays.kept[i] = 1;
+  return {partial, rays.kept};
+}
 
 }  // namespace castray::CASTRAY_ISA

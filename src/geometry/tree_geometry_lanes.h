@@ -24,7 +24,7 @@ class TreeGeometry {
     has_partial() ? bvh_occluded(tree_.bvh, there_, rays) : bvh_occluded(tree_.bvh, rays);
   }
 
-  CASTRAY_INLINE bool thins() const { return there_.partial.triangles && there_.partial.met_once; }
+  CASTRAY_INLINE bool thins() const { return there_.thins(); }
 
   CASTRAY_INLINE InPlace placement(const SurfaceHit& /*hit*/) const { return {}; }
 

@@ -69,8 +69,7 @@ void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) { find_occlud
 
 void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const ShadowBatch& rays) {
   if (!rays.kept) return find_occluded(bvh, there, rays);
-  for (uint32_t i = 0; i < rays.count; ++i) rays.kept[i] = 1;
-  find_occluded(bvh, Thinning{there.partial, rays.kept}, rays);
+  find_occluded(bvh, begin_thinning(there.partial, rays), rays);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -66,10 +66,7 @@ class Surfaces {
                                           Vec3<T>(scene_.positions[t[2]]), hit.b1, hit.b2));
     const Vec3<T> normal = placement.normal(normals_[hit.triangle]);
     const Vec3<T> to_viewer = -ray.direction;
-    const float number =
-        glass_number(world, hit.triangle, static_cast<float>(hit.b1), static_cast<float>(hit.b2));
-    const std::uint16_t material = scene_.at_point(
-        scene_.on_side(scene_.triangle_material[hit.triangle], dot(normal, to_viewer) > 0), number);
+    const std::uint16_t material = material_at(hit, world, dot(normal, to_viewer) > 0);
     const Material& m = scene_.materials[material];
     const TrianglePlace<T> place{hit.triangle, hit.b1, hit.b2};
     const Frame<T> frame =
@@ -92,6 +89,16 @@ class Surfaces {
       surface.emission = values.color(slot_emission);
     }
     return surface;
+  }
+
+  std::uint16_t material_at(const Hit<T>& hit, std::uint32_t world, bool front) const {
+    const std::uint16_t material = scene_.on_side(scene_.triangle_material[hit.triangle], front);
+    const Material& m = scene_.materials[material];
+    const auto is_glass = [&] {
+      return glass_number(world, hit.triangle, static_cast<float>(hit.b1), static_cast<float>(hit.b2)) <
+             m.glass_share();
+    };
+    return m.has_glass() && is_glass() ? static_cast<std::uint16_t>(m.glass) : material;
   }
 
   /// What a pixel sees of the plane of a triangle with this normal, around the point p.

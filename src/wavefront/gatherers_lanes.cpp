@@ -2,12 +2,22 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// The box from `low` to `high`, somewhat larger.
+CASTRAY_INLINE Box box_between(const float (&low)[3], const float (&high)[3]) {
+  Box box;
+  for (int a = 0; a < 3; ++a) {
+    box.center[a] = 0.5f * (low[a] + high[a]);
+    box.half[a] = 0.5f * (high[a] - low[a]) * (1 + 0x1p-20f) + 0x1p-24f;
+  }
+  return box;
+}
+
 /// Bounds of a range of vertices; entries without a hit do not count. A point at the origin if there is
 /// none: `empty`.
 template <int vectors>
 CASTRAY_INLINE Box bounds_of(const Vertices& x, int first, bool& empty) {
   const float* axes[3] = {x.p.x, x.p.y, x.p.z};
-  Box box{};
+  float lowest[3], highest[3];
   Mask valid[vectors];
   uint32_t found = 0;
   for (int i = 0; i < vectors; ++i) {
@@ -15,7 +25,7 @@ CASTRAY_INLINE Box bounds_of(const Vertices& x, int first, bool& empty) {
     found |= bits(valid[i]);
   }
   empty = !found;
-  if (empty) return box;
+  if (empty) return {};
   for (int axis = 0; axis < 3; ++axis) {
     Float low(__builtin_inff()), high(-__builtin_inff());
     for (int i = 0; i < vectors; ++i) {
@@ -28,10 +38,10 @@ CASTRAY_INLINE Box bounds_of(const Vertices& x, int first, bool& empty) {
       l = lane(low, k) < l ? lane(low, k) : l;
       h = lane(high, k) > h ? lane(high, k) : h;
     }
-    box.center[axis] = 0.5f * (l + h);
-    box.half[axis] = 0.5f * (h - l) * (1 + 0x1p-20f) + 0x1p-24f;
+    lowest[axis] = l;
+    highest[axis] = h;
   }
-  return box;
+  return box_between(lowest, highest);
 }
 
 namespace {
@@ -67,16 +77,6 @@ float greatest_gap(const Vertices& x, const float* place, int first, float low, 
     end = highest[b];
   }
   return gap;
-}
-
-/// The box from `low` to `high`, somewhat larger, as bounds_of makes it.
-CASTRAY_INLINE Box box_between(const float (&low)[3], const float (&high)[3]) {
-  Box box;
-  for (int a = 0; a < 3; ++a) {
-    box.center[a] = 0.5f * (low[a] + high[a]);
-    box.half[a] = 0.5f * (high[a] - low[a]) * (1 + 0x1p-20f) + 0x1p-24f;
-  }
-  return box;
 }
 
 /// Makes the points on the two sides of a cut two groups.

@@ -58,10 +58,9 @@ CASTRAY_INLINE Footprint footprint_at(const TriangleTable& triangles, const Plac
 /// What materials are at these points, of which some are glass (glass_number).
 CASTRAY_INLINE Uint at_points(const KernelScene& scene, Uint material, uint32_t world,
                               const SurfaceHit& hit) {
-  const Uint instance = hash_combine(hash_combine(Uint(world), Uint(0x61a55u)), hit.instance);
-  const Uint triangle = hash_combine(instance, hit.primitive);
-  const Uint key = hash_combine(hash_combine(triangle, as_uint(hit.b1)), as_uint(hit.b2));
-  const Mask is_glass = to_unit(key) < gather(scene.glass, &KernelMaterial::glass_share, material);
+  const Uint in_instance = hash_combine(glass_world(Uint(world)), hit.instance);
+  const Uint hash = point_hash(in_instance, hit.primitive, as_uint(hit.b1), as_uint(hit.b2));
+  const Mask is_glass = to_unit(hash) < gather(scene.glass, &KernelMaterial::glass_share, material);
   return select(is_glass, gather(scene.glass, &KernelMaterial::glass, material), material);
 }
 
