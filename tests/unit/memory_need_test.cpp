@@ -55,11 +55,12 @@ struct Case {
 TEST_CASE("what a scene takes while it is prepared is known beforehand", "[memory]") {
   const auto [shape, triangles, glows, build, integrator, accel] = GENERATE(values<Case>({
       {"terrain", 1200000},
-      {"soup", 300000},
+      {"hair", 300000},
       {"sticks", 100000, false, BuildQuality::best},
       {"blob", 80000, true},
       {"soup", 80000, true},
       {"soup", 300000, false, BuildQuality::fast, Integrator::reference},
+      {"soup", 80000, true, BuildQuality::fast, Integrator::reference},
       {"soup", 8000, false, BuildQuality::fast, Integrator::wavefront, AccelKind::list},
   }));
   CAPTURE(shape, triangles, glows);
