@@ -159,24 +159,20 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain) {
   plan.kernel = kernel_name(plan);
 }
 
-void choose_by_pilot(Plan& plan, double gain_of_sharing, double error) {
+void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few) {
   constexpr double enough = 1.5;
-  // Suffixes that meet mirrors and glass serve their own pixel, and what is seen by way of these asks a ray
-  // for each pixel and suffix. So half of the suffixes take 0.6 of the time for a third more error, and more
-  // of it where all else is clean. Where caustics by chance are very bright, what is seen of them by way of
-  // glass is all of the error: sharing does not help, and fewer suffixes make it worse.
-  constexpr double enough_for_few = 0.85, enough_for_all = 2.25, very_bright = 200;
-  const int tried = plan.suffixes;
-  const bool few_may_do = plan.few_suffixes > 0 && plan.gain_of_light_paths < very_bright;
-  if (few_may_do && gain_of_sharing < enough_for_all)
-    plan.suffixes = gain_of_sharing < enough_for_few ? 0 : plan.few_suffixes;
-  else if (gain_of_sharing < std::min(error, enough))
+  // A wrong choice of few suffixes costs little. But where caustics by chance are very bright, what is seen
+  // of them by way of glass is most of the error, rarer than a pilot meets, and sharing does not lessen it.
+  constexpr double very_bright = 200;
+  const double least_of_few = plan.gain_of_light_paths >= very_bright ? enough : 1;
+  if (gain_of_sharing < (few ? least_of_few : std::min(error, enough)))
     plan.suffixes = 0;
-  const std::string sharing =
-      plan.suffixes > 0 && plan.suffixes < tried ? fmt::format("sharing {}", tried) : "sharing";
+  else if (few)
+    plan.suffixes = plan.few_suffixes;
   plan.kernel =
-      fmt::format("{} (by a pilot, {} is {} as efficient as plain paths, give or take a factor of {})",
-                  kernel_name(plan), sharing, times(gain_of_sharing), two_digits(error));
+      fmt::format("{} (by a pilot, sharing{} is {} as efficient as plain paths, give or take a factor of {})",
+                  kernel_name(plan), few ? fmt::format(" {}", plan.few_suffixes) : "", times(gain_of_sharing),
+                  two_digits(error));
 }
 
 }  // namespace castray

@@ -18,7 +18,7 @@ struct Plan {
   bool light_paths = false;                  ///< bring the caustics that the camera sees directly
   double light_paths_per_pixel = 1;          ///< of the full image, for each sample
   int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
-  int few_suffixes = 0;                      ///< where sharing gains little; 0: there paths are plain
+  int few_suffixes = 0;                      ///< where so many may do: beside mirrors and glass; or 0
   int light_points = 0;                      ///< shared by each tile
   int environment_points = 0;                ///< likewise
   bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
@@ -59,9 +59,9 @@ void choose_caustics(Plan& plan, double gain_of_light_paths);
 void choose_reconstruction(Plan& plan, std::optional<double> gain);
 
 /// Takes shared paths if these are that many times as efficient as plain ones and it is more than the
-/// standard error, a factor, or than 1.5. Where few suffixes may do, it takes these from 0.85 on, and all of
-/// them from 2.25 on, unless paths from lights do 200 times better than chance. Says so in Plan::kernel.
-/// After choose_caustics.
-void choose_by_pilot(Plan& plan, double gain_of_sharing, double error);
+/// standard error, a factor, or than 1.5. `few`: that is with few suffixes, which are taken from a gain of 1
+/// on, or of 1.5 where paths from lights do 200 times better than chance. Says so in Plan::kernel. After
+/// choose_caustics.
+void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few = false);
 
 }  // namespace castray

@@ -60,9 +60,10 @@ struct Ways {
   TechniqueFigures plain, shared;
 };
 
-/// Errors times costs.
+/// Errors times costs; `few`: that of shared paths is with half of the suffixes.
 struct Products {
   double plain, shared;
+  bool few = false;
 
   std::optional<double> sharing() const {
     if (!(plain > 0) || !(shared > 0)) return {};
@@ -108,9 +109,20 @@ struct CausticErrors {
 
 /// With the error of caustics, by plain and by shared paths, and the cost of light paths, besides those of
 /// `rest`.
-Products products_of(const Ways& ways, const Ways& rest, double of_plain, double of_shared, double rays) {
-  return {(rest.plain.error + of_plain) * (ways.plain.cost + rays),
-          (rest.shared.error * growth_beside_plain(rest) + of_shared) * (ways.shared.cost + rays)};
+///
+/// Half of the suffixes make the error beside that of caustics half as large again, and the cost, of which
+/// that share of plain paths' is left without any, is linear in their number: both within a fifth, as on
+/// scenes with mirrors and glass. They are taken where that is more efficient, unless all of them gain much:
+/// there caustics are less of the error of many samples than of few.
+Products products_of(const Ways& ways, const Ways& rest, double of_plain, double of_shared, double rays,
+                     bool few_may_do) {
+  constexpr double error_of_half = 1.55, cost_of_none = 0.63, gains_much = 2.25;
+  const double plain_cost = ways.plain.cost + rays, cost = ways.shared.cost + rays;
+  const double error = rest.shared.error * growth_beside_plain(rest);
+  const double plain = (rest.plain.error + of_plain) * plain_cost, all = (error + of_shared) * cost;
+  const double half = (error_of_half * error + of_shared) * (cost_of_none * plain_cost + cost) / 2;
+  const bool few = few_may_do && half < all && plain < gains_much * all;
+  return {plain, few ? half : all, few};
 }
 
 /// The efficiency of reconstruction over means, with shared paths to which pixels' own noise and rays are
@@ -160,20 +172,25 @@ Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) 
   const Ways rest{figures[0], figures[q.ways - 1]};
   Gains gains;
   if (!q.by_lights) {
-    gains.sharing_by_chance = products_of(rest, rest, 0, 0, 0).sharing();
+    const Products by_chance = products_of(rest, rest, 0, 0, 0, q.open.few);
+    gains.sharing_by_chance = by_chance.sharing();
+    gains.few_by_chance = by_chance.few;
     gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, 0, 0, q.list);
     return gains;
   }
   const double rays = q.splats.rays;
   const CausticErrors caustics(q.splats, rest.plain.brightness);
-  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, rays);
+  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, rays, q.open.few);
   gains.sharing_by_lights = by_light.sharing();
+  gains.few_by_lights = by_light.few;
   gains.reconstruction_by_lights = gain_of_reconstruction(rest.shared, caustics.by_light, rays, q.list);
   if (!q.both || !(max_component(q.splats.radiance) > 0)) return gains;
   const Ways chance = q.tried ? Ways{figures[q.ways], figures.back()} : rest;
   const double left = q.tried ? left_by_sharing(rest, chance, caustics.by_chance) : 1;
-  const Products by_chance = products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0);
+  const Products by_chance =
+      products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0, q.open.few);
   gains.sharing_by_chance = by_chance.sharing();
+  gains.few_by_chance = by_chance.few;
   gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, caustics.by_chance * left, 0, q.list);
   gains.light_paths = by_chance.least(q.open.sharing) / by_light.least(q.open.sharing);
   return gains;
@@ -184,8 +201,9 @@ bool light_paths_win(const Question& q, const std::vector<TechniqueFigures>& fig
   const Ways rest{figures[0], figures[q.ways - 1]};
   const CausticErrors caustics(q.splats, rest.plain.brightness);
   const double least = caustics.by_chance / tile_pixels;
-  const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, q.splats.rays);
-  const Products by_chance = products_of(rest, rest, caustics.by_chance, least, 0);
+  const Products by_light =
+      products_of(rest, rest, caustics.by_light, caustics.by_light, q.splats.rays, q.open.few);
+  const Products by_chance = products_of(rest, rest, caustics.by_chance, least, 0, q.open.few);
   return by_light.least(q.open.sharing) < by_chance.least(q.open.sharing);
 }
 

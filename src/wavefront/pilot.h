@@ -19,8 +19,9 @@ struct Gains {
   std::optional<double> light_paths;  ///< of paths from lights over chance
   std::optional<double>
       sharing_by_lights;  ///< of shared over plain paths, with caustics by paths from lights
-  std::optional<double> sharing_by_chance;  ///< the same with caustics by chance
-  double sharing_error = 1;                 ///< the standard error of the gain of sharing, as a factor
+  std::optional<double> sharing_by_chance;            ///< the same with caustics by chance
+  bool few_by_lights = false, few_by_chance = false;  ///< whether these are with half of the suffixes
+  double sharing_error = 1;  ///< the standard error of the gain of sharing, as a factor
   /// Of images from differences of pixels over those from means, at few samples and with shared paths.
   std::optional<double> reconstruction_by_lights, reconstruction_by_chance;
 };
@@ -28,6 +29,7 @@ struct Gains {
 /// Which choices are open. Others are as in the options.
 struct OpenChoices {
   bool caustics = false, sharing = false, reconstruction = false;
+  bool few = false;  ///< where paths are shared, half of the suffixes may do
 };
 
 /// Tries shared and plain paths, with caustics by light paths and by chance, as far as that is open.

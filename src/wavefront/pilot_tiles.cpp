@@ -23,7 +23,7 @@ static_assert(group_samples == replicates * samples * batch_size);
 struct Costs {
   double gathered, asked, evaluated;
 };
-constexpr Costs over_list{0.075, 0.8, 0.18}, over_tree{0.02, 0.8, 0.04};
+constexpr Costs over_list{0.075, 0.8, 0.18}, over_tree{0.075, 0.8, 0.05};
 
 double cost_of(const TileResult& r, const Costs& costs) {
   return static_cast<double>(r.rays - r.gathered) +

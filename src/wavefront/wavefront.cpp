@@ -34,7 +34,8 @@ class Wavefront final : public PreparedIntegrator {
         .caustics = job.options.caustics == Switch::automatic && traces_light_paths(job.options, plan_),
         .sharing = plan_.suffixes > 0 && job.options.reuse.automatic && job.options.reconstruct != Switch::on,
         .reconstruction =
-            job.options.reconstruct == Switch::automatic && keeps_differences(job.options, plan_)};
+            job.options.reconstruct == Switch::automatic && keeps_differences(job.options, plan_),
+        .few = plan_.few_suffixes > 0};
     if (open.caustics || open.sharing || open.reconstruction) as_pilot([&] { choose_techniques(job, open); });
   }
 
@@ -149,7 +150,8 @@ class Wavefront final : public PreparedIntegrator {
       choose_reconstruction(plan_,
                             by_lights ? gains.reconstruction_by_lights : gains.reconstruction_by_chance);
     const std::optional<double>& sharing = by_lights ? gains.sharing_by_lights : gains.sharing_by_chance;
-    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing, gains.sharing_error);
+    const bool few = by_lights ? gains.few_by_lights : gains.few_by_chance;
+    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing, gains.sharing_error, few);
   }
 
   const BvhStats& tree_stats() const { return data_.bvh ? data_.bvh->stats() : data_.instances->stats(); }

@@ -130,21 +130,34 @@ TEST_CASE("paths are shared if that does better by more than its error, or by mu
   }
 }
 
-TEST_CASE("beside mirrors and glass few suffixes are shared in doubt, and all of them if that gains much") {
-  for (const auto& [gain, error, suffixes] :
-       {std::tuple{3.0, 1.2, 64}, {2.0, 1.1, 32}, {1.1, 1.4, 32}, {0.9, 1.1, 32}, {0.8, 1.0, 0}}) {
+TEST_CASE("few suffixes are shared in doubt, but for where bright caustics are most of the error") {
+  for (const auto& [gain, error, light_paths, suffixes] : {std::tuple{1.1, 1.4, 0.0, 32},
+                                                           {1.1, 1.4, 100.0, 32},
+                                                           {0.9, 1.0, 0.0, 0},
+                                                           {1.4, 1.0, 300.0, 0},
+                                                           {1.6, 3.0, 300.0, 32}}) {
     Plan plan;
     plan.suffixes = 64;
     plan.few_suffixes = 32;
-    choose_by_pilot(plan, gain, error);
+    plan.gain_of_light_paths = light_paths;
+    choose_by_pilot(plan, gain, error, true);
     CHECK(plan.suffixes == suffixes);
   }
-  Plan bright;  // bright hits, which suffixes do not share, are most of the error: as without mirrors
-  bright.suffixes = 64;
-  bright.few_suffixes = 32;
-  bright.gain_of_light_paths = 300;
-  choose_by_pilot(bright, 1.1, 1.3);
-  CHECK(bright.suffixes == 0);
+}
+
+TEST_CASE("half of the suffixes are taken where error times cost is less with them, unless all gain much") {
+  // plain paths of 1000 rays, of which 630 are left without suffixes; noise by its greatest size
+  const auto gains = [](bool few, std::uint64_t shared_rays, float plain_noise) {
+    const RenderJob job = pretended(0.1f, plain_noise, 0, shared_rays, 1000);
+    const OpenChoices open{.caustics = false, .sharing = true, .few = few};
+    return find_gains({512, 512, true, 1, job}, sharing(), open, {});
+  };
+  CHECK_FALSE(gains(true, 1000, 0.1f).few_by_chance);
+  CHECK(gains(true, 4000, 0.1f).few_by_chance);
+  CHECK_FALSE(gains(false, 4000, 0.1f).few_by_chance);
+  CHECK_FALSE(gains(true, 4000, 0.5f).few_by_chance);
+  const auto gain = [&](bool few) { return *gains(few, 4000, 0.1f).sharing_by_chance; };
+  CHECK(gain(true) / gain(false) == Approx(4 / (1.55 * (0.63 + 4) / 2)).epsilon(1e-6));
 }
 
 TEST_CASE("an image with few suffixes by a pilot is that of as many given, and its film tells them") {
