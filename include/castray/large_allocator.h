@@ -1,19 +1,22 @@
 #pragma once
 
 #include <cstddef>
+#include <new>
+#include <utility>
 #include <vector>
 
 namespace castray {
 
-/// Memory aligned to cache lines; for great blocks to large pages, which the system is asked for: they are
-/// filled and found sooner. Throws std::bad_alloc.
+/// Zeros, aligned to cache lines; great blocks to large pages, which the system is asked for: they are filled
+/// and found sooner, by the thread that uses a page first. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
-void free_large(void* memory);
+void free_large(void* memory, std::size_t bytes);
 
 /// What a block of so many bytes takes of memory.
 std::size_t bytes_in_large_pages(std::size_t bytes);
 
-/// For vectors of numbers of every pixel.
+/// For vectors of numbers of every pixel, whose size is set once: what `resize` adds is zero as memory is
+/// when it is new, and is not written a second time.
 template <class T>
 struct LargeAllocator {
   using value_type = T;
@@ -23,7 +26,13 @@ struct LargeAllocator {
   LargeAllocator(const LargeAllocator<U>&) {}
 
   T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t) { free_large(memory); }
+  void deallocate(T* memory, std::size_t count) { free_large(memory, count * sizeof(T)); }
+  template <class U>
+  void construct(U*) {}  // zero already
+  template <class U, class... Arguments>
+  void construct(U* to, Arguments&&... arguments) {
+    ::new (static_cast<void*>(to)) U(std::forward<Arguments>(arguments)...);
+  }
   friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }
 };
 

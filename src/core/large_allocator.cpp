@@ -2,7 +2,9 @@
 
 #include <sys/mman.h>
 
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace castray {
@@ -16,14 +18,29 @@ std::size_t alignment_of(std::size_t bytes) { return bytes >= 2 * large_page ? l
 }  // namespace
 
 void* allocate_large(std::size_t bytes) {
-  const std::size_t alignment = alignment_of(bytes);
-  void* memory = std::aligned_alloc(alignment, bytes_in_large_pages(bytes));
-  if (!memory) throw std::bad_alloc();
-  if (alignment == large_page) madvise(memory, bytes, MADV_HUGEPAGE);  // without it pages are small
-  return memory;
+  const std::size_t size = bytes_in_large_pages(bytes);
+  if (alignment_of(bytes) == cache_line) {
+    void* memory = std::aligned_alloc(cache_line, size);
+    if (!memory) throw std::bad_alloc();
+    return std::memset(memory, 0, size);
+  }
+  const std::size_t more = size + large_page;
+  void* all = mmap(nullptr, more, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (all == MAP_FAILED) throw std::bad_alloc();
+  char* const begin = static_cast<char*>(all);
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % large_page;
+  if (before > 0) munmap(begin, before);
+  munmap(begin + before + size, more - before - size);
+  madvise(begin + before, size, MADV_HUGEPAGE);  // without it pages are small
+  return begin + before;
 }
 
-void free_large(void* memory) { std::free(memory); }
+void free_large(void* memory, std::size_t bytes) {
+  if (alignment_of(bytes) == large_page)
+    munmap(memory, bytes_in_large_pages(bytes));
+  else
+    std::free(memory);
+}
 
 std::size_t bytes_in_large_pages(std::size_t bytes) {
   const std::size_t alignment = alignment_of(bytes);

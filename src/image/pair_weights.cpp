@@ -47,27 +47,26 @@ struct Block {
 
 class Weights {
  public:
-  Weights(const DifferenceSums& sums, int half, int threads)
+  Weights(const DifferenceSums& sums, int half, int threads, PixelPlanes& luminances)
       : sums_(sums),
         half_(half),
         threads_(threads),
         w_(sums.width()),
         h_(sums.height()),
-        own_(w_, h_),
-        right_(w_, h_),
-        below_(w_, h_),
+        own_(luminances[Term::own]),
+        right_(luminances[Term::right]),
+        below_(luminances[Term::below]),
         block_columns_((w_ + block - 1) / block),
         blocks_(static_cast<std::size_t>(block_columns_) *
                 static_cast<std::size_t>((h_ + block - 1) / block)) {}
 
-  PixelCouplings find() {
+  void find(PixelCouplings& weights) {
 #pragma omp parallel for schedule(static) num_threads(threads_)
     for (int y = 0; y < h_; ++y) {
       read_luminance(sums_, half_, y, Term::own, own_.row(y));
       read_luminance(sums_, half_, y, Term::right, right_.row(y));
       read_luminance(sums_, half_, y, Term::below, below_.row(y));
     }
-    PixelCouplings weights(w_, h_);
 #pragma omp parallel num_threads(threads_)
     {
       Neighbourhood around(w_);
@@ -79,14 +78,16 @@ class Weights {
           around.add_up(right_, sums_, half_, y, Term::right);
           write_pairs(y, w_ - 1, around, right_.row(y), sums_.counts(half_, y, Term::right),
                       weights.screen.row(y), weights.right.row(y));
-          if (y + 1 == h_) continue;
+          if (y + 1 == h_) {
+            std::fill_n(weights.below.row(y), w_, 0.f);
+            continue;
+          }
           around.add_up(below_, sums_, half_, y, Term::below);
           write_pairs(y, w_, around, below_.row(y), sums_.counts(half_, y, Term::below),
                       weights.screen.row(y), weights.below.row(y));
         }
       }
     }
-    return weights;
   }
 
  private:
@@ -166,6 +167,7 @@ class Weights {
     for (int x = 0; x < pairs; ++x) {
       const auto at = static_cast<std::size_t>(x);
       const float n = around.sums[0][at];
+      weight[x] = 0;
       if (count[x] == 0 || n < 2) continue;
       const float mean = around.sums[1][at] / n, mean_square = around.sums[2][at] / n;
       const float among = std::max(mean_square - mean * mean, 0.f) * n / (n - 1),
@@ -179,15 +181,16 @@ class Weights {
 
   const DifferenceSums& sums_;
   int half_, threads_, w_, h_;
-  PixelPlane own_, right_, below_;  ///< luminances of means
+  PixelPlane &own_, &right_, &below_;  ///< luminances of means
   int block_columns_;
   std::vector<Block> blocks_;
 };
 
 }  // namespace
 
-PixelCouplings weights_of(const DifferenceSums& sums, int half, int threads) {
-  return Weights(sums, half, threads).find();
+void find_weights(const DifferenceSums& sums, int half, int threads, PixelPlanes& luminances,
+                  PixelCouplings& weights) {
+  Weights(sums, half, threads, luminances).find(weights);
 }
 
 }  // namespace castray

@@ -11,6 +11,9 @@ namespace castray {
 /// Estimates come from how smooth the image is. A mean and a difference say the same of two pixels, but for
 /// the samples in which these were in different tiles; so what they contradict each other tells the variance
 /// of the means. That of differences is at most how much they vary among neighbours.
-PixelCouplings weights_of(const DifferenceSums& sums, int half, int threads);
+///
+/// `luminances`: memory, whose border is zero and stays so.
+void find_weights(const DifferenceSums& sums, int half, int threads, PixelPlanes& luminances,
+                  PixelCouplings& weights);
 
 }  // namespace castray

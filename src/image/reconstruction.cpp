@@ -1,6 +1,7 @@
 #include "image/reconstruction.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -27,60 +28,61 @@ class RightSide {
         weights_(weights),
         here_(sums.width()),
         next_(sums.width()),
-        difference_(sums.width()),
-        pull_(static_cast<std::size_t>(sums.width())) {}
+        difference_(sums.width()) {
+    for (Pulls* pulls : {&right_, &above_, &below_})
+      for (auto& channel : *pulls) channel.resize(static_cast<std::size_t>(sums.width()) + 1);
+  }
 
-  /// Rows begin <= y < end of `b`, which are zero.
+  /// Rows begin <= y < end of `b`.
   void write(int begin, int end, PixelPlanes& b) {
     const int first = std::max(begin - 1, 0);
     next_.read(sums_, half_, first, Term::own);
     for (int y = first; y < end; ++y) {
       std::swap(here_, next_);
-      if (y >= begin) pull_right(y, b);
-      if (y + 1 < sums_.height()) {
-        next_.read(sums_, half_, y + 1, Term::own);
-        pull_below(y, y >= begin, y + 1 < end, b);
+      std::swap(above_, below_);
+      const bool any_below = y + 1 < sums_.height();
+      if (any_below) next_.read(sums_, half_, y + 1, Term::own);
+      if (any_below) difference_.read(sums_, half_, y, Term::below);
+      for (std::size_t c = 0; c < 3; ++c)
+        if (any_below)
+          find_pulls(weights_.below.row(y), c, here_.channel[c].data(), next_.channel[c].data(),
+                     sums_.width(), below_[c].data());
+        else
+          std::fill(below_[c].begin(), below_[c].end(), 0.f);
+      if (y < begin) continue;
+      difference_.read(sums_, half_, y, Term::right);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double* mean = here_.channel[c].data();
+        find_pulls(weights_.right.row(y), c, mean, mean + 1, sums_.width() - 1, right_[c].data() + 1);
+        add_up(c, b[c].row(y));
       }
     }
   }
 
  private:
+  using Pulls = std::array<std::vector<float>, 3>;
+
   CASTRAY_VECTOR_CLONES
-  void pull_right(int y, PixelPlanes& b) {
-    difference_.read(sums_, half_, y, Term::right);
-    const float* weight = weights_.right.row(y);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double *difference = difference_.channel[c].data(), *mean = here_.channel[c].data();
-      float* sum = b[c].row(y);
-      for (int x = 0; x + 1 < sums_.width(); ++x) {
-        const float pull = weight[x] * static_cast<float>(difference[x] - (mean[x + 1] - mean[x]));
-        sum[x] -= pull;
-        sum[x + 1] += pull;
-      }
-    }
+  void find_pulls(const float* weight, std::size_t c, const double* mean, const double* neighbour, int count,
+                  float* __restrict pull) const {
+    const double* difference = difference_.channel[c].data();
+    for (int x = 0; x < count; ++x)
+      pull[x] = weight[x] * static_cast<float>(difference[x] - (neighbour[x] - mean[x]));
   }
 
-  /// Of this row and the next, as far as they are wanted.
   CASTRAY_VECTOR_CLONES
-  void pull_below(int y, bool this_row, bool next_row, PixelPlanes& b) {
-    difference_.read(sums_, half_, y, Term::below);
-    const float* weight = weights_.below.row(y);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double *difference = difference_.channel[c].data(), *mean = here_.channel[c].data(),
-                   *next = next_.channel[c].data();
-      float *sum = b[c].row(y), *next_sum = b[c].row(y + 1);
-      for (std::size_t x = 0; x < pull_.size(); ++x)
-        pull_[x] = weight[x] * static_cast<float>(difference[x] - (next[x] - mean[x]));
-      for (std::size_t x = 0; this_row && x < pull_.size(); ++x) sum[x] -= pull_[x];
-      for (std::size_t x = 0; next_row && x < pull_.size(); ++x) next_sum[x] += pull_[x];
-    }
+  void add_up(std::size_t c, float* __restrict sum) const {
+    const float *above = above_[c].data(), *below = below_[c].data(), *left = right_[c].data(),
+                *right = left + 1;
+    for (int x = 0; x < sums_.width(); ++x) sum[x] = above[x] + left[x] - right[x] - below[x];
   }
 
   const DifferenceSums& sums_;
   int half_;
   const PixelCouplings& weights_;
   RowMeans here_, next_, difference_;
-  std::vector<float> pull_;
+  Pulls right_;          ///< between a pixel and the one to its left; zero at both ends
+  Pulls above_, below_;  ///< between a pixel and those of the rows around
 };
 
 /// Takes out the pairs, and the pixels, of which this half has no samples.
@@ -105,15 +107,16 @@ bool may_need_corrections(const DifferenceSums& sums) {
 
 }  // namespace
 
-PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weights, int threads) {
-  const int w = sums.width(), h = sums.height();
-  PixelCouplings weights = weights_of(sums, half_of_weights, threads);
+PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weights, int threads,
+                        ScreenedPoisson& solver) {
+  const int h = sums.height();
+  PixelCouplings& weights = solver.couplings();
+  find_weights(sums, half_of_weights, threads, solver.scratch(), weights);
   keep_known(weights, sums, half, threads);
-  PixelPlanes b{PixelPlane(w, h), PixelPlane(w, h), PixelPlane(w, h)};
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int y = 0; y < h; y += rows_of_a_strip)
-    RightSide(sums, half, weights).write(y, std::min(y + rows_of_a_strip, h), b);
-  return solve_screened_poisson(std::move(weights), std::move(b), threads);
+    RightSide(sums, half, weights).write(y, std::min(y + rows_of_a_strip, h), solver.b());
+  return solver.solve();
 }
 
 Image image_of(const Film& film, int threads) {
@@ -122,7 +125,9 @@ Image image_of(const Film& film, int threads) {
   if (!sums.kept() || !may_need_corrections(sums)) return image;
   if (threads <= 0) threads = available_threads();
   const Window& window = film.window();
-  const PixelPlanes both[] = {corrections(sums, 0, 1, threads), corrections(sums, 1, 0, threads)};
+  ScreenedPoisson solver(film.width(), film.height(), threads);
+  PixelPlanes first = corrections(sums, 0, 1, threads, solver);
+  const PixelPlanes both[] = {std::move(first), corrections(sums, 1, 0, threads, solver)};
   const auto share = static_cast<float>(share_of_corrections(sums, both, threads) * sums.scale());
   for (int half = 0; half < DifferenceSums::halves; ++half) {
     const PixelPlanes& correction = both[half];
@@ -147,7 +152,7 @@ std::uint64_t bytes_of_image(const Film& like, int width, int height, int thread
   const std::uint64_t writing = pixels * (shown + (like.keeps_replicates() ? noise : 0)) + w * line_buffers;
   std::uint64_t making = 0;
   if (like.differences().kept()) {
-    constexpr std::uint64_t rows_of_a_thread = 6 * sizeof(float) + 3 * (3 + 1) * sizeof(double);
+    constexpr std::uint64_t rows_of_a_thread = 9 * sizeof(float) + 3 * (3 + 1) * sizeof(double);
     making = 3 * PixelPlane::bytes_of(width, height) +  // the corrections of the other half
              bytes_to_solve(width, height, threads) +
              static_cast<std::uint64_t>(threads) * w * rows_of_a_thread;

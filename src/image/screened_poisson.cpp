@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "core/vector_clones.h"
 
@@ -19,7 +20,6 @@ constexpr int worth_two_cycles = 16;  ///< side in pixels
 constexpr float first_step = 0.5617f, second_step = 1.389f;
 constexpr int worth_threads = 1 << 16;  ///< pixels
 constexpr int coarsest_side = 2, coarsest_sweeps = 4;
-constexpr int rows_of_a_strip = 16, rows_around = 2;  ///< even
 
 /// One grid of the hierarchy. Each coarser one has a pixel for every 2x2 (Brandt 1977).
 struct Level {
@@ -28,28 +28,29 @@ struct Level {
   PixelPlanes b, x, next;
 
   explicit Level(PixelCouplings couplings) : a(std::move(couplings)), inverse_diagonal(a.width, a.height) {
-    for (int c = 0; c < 3; ++c) x[c] = next[c] = PixelPlane(a.width, a.height);
+    for (PixelPlanes* planes : {&b, &x, &next})
+      for (PixelPlane& plane : *planes) plane = PixelPlane(a.width, a.height);
   }
 };
 
-/// One plane of a strip of rows and of those around it, in the cache of a thread.
-class StripPlane {
+/// The last rows of three channels between two sweeps, in the cache of a thread.
+class RecentRows {
  public:
-  explicit StripPlane(int width) : plane_(width, rows_of_a_strip + 2 * rows_around) {}
-  void begin_at(int y) { first_ = y - rows_around; }
-  float* row(int y) { return plane_.row(y - first_); }
+  explicit RecentRows(int width) : plane_(width, 3 * kept) {}
+  float* row(std::size_t c, int y) { return plane_.row(static_cast<int>(c) * kept + (y & (kept - 1))); }
 
  private:
+  static constexpr int kept = 4;  ///< three to read around one, and one to write; a power of 2
   PixelPlane plane_;
-  int first_ = 0;
 };
 
-/// Where sweeps over the rows begin <= y < end put what is between them.
-struct Strip {
+/// What a thread that sweeps over the rows begin <= y < end has between its sweeps.
+struct Band {
   int begin = 0, end = 0;
-  StripPlane even, odd;
+  RecentRows once, twice;  ///< relaxed
+  std::vector<float> residual;
 
-  explicit Strip(int width) : even(width), odd(width) {}
+  explicit Band(int width) : once(width), twice(width), residual(static_cast<std::size_t>(width)) {}
 };
 
 /// What the equations of a row say of its values and of those around.
@@ -71,8 +72,10 @@ struct RowEquations {
 struct RowsAround {
   const float *row, *up, *down;
 
-  template <class Plane>
-  RowsAround(Plane& plane, int y) : row(plane.row(y)), up(plane.row(y - 1)), down(plane.row(y + 1)) {}
+  RowsAround(const PixelPlane& plane, int y)
+      : row(plane.row(y)), up(plane.row(y - 1)), down(plane.row(y + 1)) {}
+  RowsAround(RecentRows& rows, std::size_t c, int y)
+      : row(rows.row(c, y)), up(rows.row(c, y - 1)), down(rows.row(c, y + 1)) {}
 };
 
 /// A damped Jacobi step from zero.
@@ -92,18 +95,21 @@ void relax(const RowEquations& a, float step, const RowsAround& from, float* __r
   }
 }
 
-/// Adds the residual, summed over pairs of pixels.
 CASTRAY_VECTOR_CLONES
-void add_residual(const RowEquations& a, const RowsAround& from, float* __restrict sums) {
+void find_residual(const RowEquations& a, const RowsAround& from, float* __restrict residual) {
   const float *x = from.row, *up = from.up, *down = from.down;
-  const auto residual = [&](int i) {
-    return (a.b[i] - a.screen[i] * x[i]) +
-           ((a.right[i] * (x[i + 1] - x[i]) + a.right[i - 1] * (x[i - 1] - x[i])) +
-            (a.below[i] * (down[i] - x[i]) + a.above[i] * (up[i] - x[i])));
-  };
-  const int pairs = a.width / 2;
-  for (int i = 0; i < pairs; ++i) sums[i] += residual(2 * i) + residual(2 * i + 1);
-  if (a.width % 2 == 1) sums[pairs] += residual(a.width - 1);
+  for (int i = 0; i < a.width; ++i)
+    residual[i] = (a.b[i] - a.screen[i] * x[i]) +
+                  ((a.right[i] * (x[i + 1] - x[i]) + a.right[i - 1] * (x[i - 1] - x[i])) +
+                   (a.below[i] * (down[i] - x[i]) + a.above[i] * (up[i] - x[i])));
+}
+
+/// Adds values summed over pairs of pixels.
+CASTRAY_VECTOR_CLONES
+void add_pairs(const float* values, int width, float* __restrict sums) {
+  const int pairs = width / 2;
+  for (int i = 0; i < pairs; ++i) sums[i] += values[2 * i] + values[2 * i + 1];
+  if (width % 2 == 1) sums[pairs] += values[width - 1];
 }
 
 /// x with the corrections of a coarser grid, each of which is that of two pixels.
@@ -122,78 +128,94 @@ void go_further(const float* x, float further, int width, float* __restrict next
   for (int i = 0; i < width; ++i) next[i] += further * (x[i] - next[i]);
 }
 
-class Multigrid {
+CASTRAY_VECTOR_CLONES
+void invert(const PixelCouplings& a, int y, float* __restrict inverse) {
+  const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
+              *above = a.below.row(y - 1);
+  for (int x = 0; x < a.width; ++x) {
+    const float diagonal = screen[x] + right[x] + right[x - 1] + below[x] + above[x];
+    inverse[x] = diagonal > 0 ? 1 / diagonal : 0;
+  }
+}
+
+/// Adds values, one after the other, to those of a coarser row.
+CASTRAY_VECTOR_CLONES
+void add_both(const float* values, int width, float* __restrict sums) {
+  const int pairs = width / 2;
+  for (int i = 0; i < pairs; ++i) sums[i] = (sums[i] + values[2 * i]) + values[2 * i + 1];
+  if (width % 2 == 1) sums[pairs] += values[width - 1];
+}
+
+CASTRAY_VECTOR_CLONES
+void add_every_second(const float* values, int count, float* __restrict sums) {
+  for (int i = 0; i < count; ++i) sums[i] += values[2 * i];
+}
+
+/// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks: with it a
+/// cycle lessens every error, whatever the couplings. Row y of the coarser grid.
+void couple_coarse(const PixelCouplings& fine, int y, PixelCouplings& coarse) {
+  float *screen = coarse.screen.row(y), *right = coarse.right.row(y), *below = coarse.below.row(y);
+  for (float* row : {screen, right, below}) std::fill_n(row, coarse.width, 0.f);
+  for (int row = 2 * y; row < std::min(2 * y + 2, fine.height); ++row) {
+    add_both(fine.screen.row(row), fine.width, screen);
+    add_every_second(fine.right.row(row) + 1, coarse.width - 1, right);
+    if (row % 2 == 1 && row + 1 < fine.height) add_both(fine.below.row(row), fine.width, below);
+  }
+}
+
+}  // namespace
+
+class ScreenedPoisson::Multigrid {
  public:
-  Multigrid(PixelCouplings couplings, PixelPlanes b, int threads) : threads_(threads) {
-    levels_.emplace_back(std::move(couplings));
-    levels_[0].b = std::move(b);
-    invert_diagonal(levels_[0]);
+  Multigrid(int width, int height, int threads) : threads_(threads) {
+    levels_.emplace_back(PixelCouplings(width, height));
     do {
-      levels_.emplace_back(coarser(levels_.back().a));
-      for (PixelPlane& plane : levels_.back().b)
-        plane = PixelPlane(levels_.back().a.width, levels_.back().a.height);
-      invert_diagonal(levels_.back());
+      const PixelCouplings& fine = levels_.back().a;
+      levels_.emplace_back(PixelCouplings((fine.width + 1) / 2, (fine.height + 1) / 2));
     } while (std::max(levels_.back().a.width, levels_.back().a.height) > coarsest_side);
+    for (int i = 0; i < threads; ++i) bands_.emplace_back(width);
   }
 
+  Level& finest() { return levels_[0]; }
+
   PixelPlanes solve() {
+    for (PixelPlane& x : finest().x)
+      if (x.values.empty()) x = PixelPlane(finest().a.width, finest().a.height);
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      if (i > 0) couple(levels_[i - 1].a, levels_[i].a);
+      invert_diagonal(levels_[i]);
+    }
     cycles(0, cycle_steps);
-    return std::move(levels_[0].x);
+    return std::move(finest().x);
   }
 
  private:
-  int threads_for(const Level& level) const {
-    return level.a.width * level.a.height >= worth_threads ? threads_ : 1;
-  }
+  int threads_for(int width, int height) const { return width * height >= worth_threads ? threads_ : 1; }
 
-  /// `work(strip, c)`: what is to be done to a channel of a strip. Several sweeps of a strip, one after the
-  /// other, read memory once; rows around it are then swept twice.
+  /// `work(band)`, with bands that cover the rows; all begin with an even one.
   template <class Work>
-  void for_strips(const Level& level, Work work) const {
-#pragma omp parallel num_threads(threads_for(level))
-    {
-      Strip strip(level.a.width);
-#pragma omp for schedule(static)
-      for (int y = 0; y < level.a.height; y += rows_of_a_strip) {
-        strip.begin = y;
-        strip.end = std::min(y + rows_of_a_strip, level.a.height);
-        strip.even.begin_at(y);
-        strip.odd.begin_at(y);
-        for (std::size_t c = 0; c < 3; ++c) work(strip, c);
-      }
+  void for_bands(const Level& level, Work work) {
+    const int bands = threads_for(level.a.width, level.a.height), pairs = (level.a.height + 1) / 2;
+    const auto begin_of = [&](int k) {
+      return 2 * static_cast<int>(static_cast<std::int64_t>(pairs) * k / bands);
+    };
+#pragma omp parallel for schedule(static, 1) num_threads(bands)
+    for (int k = 0; k < bands; ++k) {
+      Band& band = bands_[static_cast<std::size_t>(k)];
+      band.begin = begin_of(k);
+      band.end = std::min(begin_of(k + 1), level.a.height);
+      work(band);
     }
   }
 
   void invert_diagonal(Level& level) const {
-#pragma omp parallel for schedule(static) num_threads(threads_for(level))
-    for (int y = 0; y < level.a.height; ++y) {
-      const PixelCouplings& a = level.a;
-      const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
-                  *above = a.below.row(y - 1);
-      float* inverse = level.inverse_diagonal.row(y);
-      for (int x = 0; x < a.width; ++x) {
-        const float diagonal = screen[x] + right[x] + right[x - 1] + below[x] + above[x];
-        inverse[x] = diagonal > 0 ? 1 / diagonal : 0;
-      }
-    }
+#pragma omp parallel for schedule(static) num_threads(threads_for(level.a.width, level.a.height))
+    for (int y = 0; y < level.a.height; ++y) invert(level.a, y, level.inverse_diagonal.row(y));
   }
 
-  /// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks: with it a
-  /// cycle lessens every error, whatever the couplings.
-  PixelCouplings coarser(const PixelCouplings& fine) const {
-    PixelCouplings coarse((fine.width + 1) / 2, (fine.height + 1) / 2);
-#pragma omp parallel for schedule(static) num_threads(threads_for(levels_.back()))
-    for (int y = 0; y < coarse.height; ++y) {
-      float *screen = coarse.screen.row(y), *to_right = coarse.right.row(y), *to_below = coarse.below.row(y);
-      for (int row = 2 * y; row < std::min(2 * y + 2, fine.height); ++row) {
-        const float *right = fine.right.row(row), *below = fine.below.row(row);
-        for (int x = 0; x < fine.width; ++x) screen[x / 2] += fine.screen.row(row)[x];
-        for (int x = 1; x + 1 < fine.width; x += 2) to_right[x / 2] += right[x];
-        if (row % 2 == 1 && row + 1 < fine.height)
-          for (int x = 0; x < fine.width; ++x) to_below[x / 2] += below[x];
-      }
-    }
-    return coarse;
+  void couple(const PixelCouplings& fine, PixelCouplings& coarse) const {
+#pragma omp parallel for schedule(static) num_threads(threads_for(fine.width, fine.height))
+    for (int y = 0; y < coarse.height; ++y) couple_coarse(fine, y, coarse);
   }
 
   /// Cycles on level i and coarser ones, from zero.
@@ -209,22 +231,20 @@ class Multigrid {
   }
 
   /// The first half of a cycle, with the cycles of coarser grids: two Jacobi steps, and the sums of the
-  /// residual over blocks of 2x2 as the coarser grid's b. `relaxed`: from x, else from zero.
+  /// residual over blocks of 2x2 as the coarser grid's b. `relaxed`: from x, else from zero. Each sweep
+  /// follows the one before it at a distance of one row, so that memory is read once.
   void go_down(std::size_t i, bool relaxed) {
     Level &level = levels_[i], &coarse = levels_[i + 1];
-    for_strips(level, [&](Strip& strip, std::size_t c) {
-      for_rows(level, c, strip, 2, strip.even, [&](const RowEquations& a, int y, float* next) {
-        if (relaxed)
-          relax(a, first_step, {level.x[c], y}, next);
-        else
-          start(a, next);
-      });
-      relax_rows(level, c, strip);
-      for (int y = strip.begin; y < strip.end; ++y) {
-        std::copy_n(strip.odd.row(y), level.a.width, level.next[c].row(y));
-        float* sums = coarse.b[c].row(y / 2);
-        if (y % 2 == 0) std::fill_n(sums, coarse.a.width, 0.f);
-        add_residual({level, c, y}, {strip.odd, y}, sums);
+    for_bands(level, [&](Band& band) {
+      for (int y = band.begin - 2; y < band.end + 2; ++y) {
+        write_rows(level, y, band.once, [&](const RowEquations& a, std::size_t c, float* next) {
+          if (relaxed)
+            relax(a, first_step, {level.x[c], y}, next);
+          else
+            start(a, next);
+        });
+        if (y >= band.begin) relax_rows(level, y - 1, band);
+        if (y >= band.begin + 2) restrict_rows(level, y - 2, band, coarse);
       }
     });
     std::swap(level.x, level.next);
@@ -239,38 +259,51 @@ class Multigrid {
   /// counts, else zero in its place.
   void go_up(std::size_t i, float further, bool relaxed) {
     Level &level = levels_[i], &coarse = levels_[i + 1];
-    for_strips(level, [&](Strip& strip, std::size_t c) {
-      for_rows(level, c, strip, 2, strip.even, [&](const RowEquations& a, int y, float* next) {
-        add_coarse(level.x[c].row(y), coarse.x[c].row(y / 2), a.width, next);
-      });
-      relax_rows(level, c, strip);
-      for (int y = strip.begin; y < strip.end; ++y) {
-        float *next = level.next[c].row(y), *x = strip.even.row(y);
-        relax({level, c, y}, first_step, {strip.odd, y}, x);
-        if (!relaxed) std::fill_n(next, level.a.width, 0.f);
-        go_further(x, further, level.a.width, next);
+    for_bands(level, [&](Band& band) {
+      for (int y = band.begin - 2; y < band.end + 2; ++y) {
+        write_rows(level, y, band.once, [&](const RowEquations& a, std::size_t c, float* next) {
+          add_coarse(level.x[c].row(y), coarse.x[c].row(y / 2), a.width, next);
+        });
+        if (y >= band.begin) relax_rows(level, y - 1, band);
+        for (std::size_t c = 0; y >= band.begin + 2 && c < 3; ++c) {
+          float *next = level.next[c].row(y - 2), *x = band.once.row(c, y - 3);
+          relax({level, c, y - 2}, first_step, {band.twice, c, y - 2}, x);
+          if (!relaxed) std::fill_n(next, level.a.width, 0.f);
+          go_further(x, further, level.a.width, next);
+        }
       }
     });
     std::swap(level.x, level.next);
   }
 
-  /// `write(equations, y, to)` for the rows of a strip and `around` more on both sides, but that rows around
-  /// the image are zero.
+  /// `write(equations, channel, to)` of row y; rows around the image are zero.
   template <class Write>
-  static void for_rows(const Level& level, std::size_t c, const Strip& strip, int around, StripPlane& to,
-                       Write write) {
-    for (int y = strip.begin - around; y < strip.end + around; ++y)
+  static void write_rows(const Level& level, int y, RecentRows& to, Write write) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      float* row = to.row(c, y);
       if (y < 0 || y >= level.a.height)
-        std::fill_n(to.row(y), level.a.width, 0.f);
+        std::fill_n(row, level.a.width, 0.f);
       else
-        write({level, c, y}, y, to.row(y));
+        write({level, c, y}, c, row);
+      row[level.a.width] = 0;
+    }
   }
 
   /// The second of two steps downwards, and the first upwards.
-  static void relax_rows(const Level& level, std::size_t c, Strip& strip) {
-    for_rows(level, c, strip, 1, strip.odd, [&](const RowEquations& a, int y, float* next) {
-      relax(a, second_step, {strip.even, y}, next);
+  static void relax_rows(const Level& level, int y, Band& band) {
+    write_rows(level, y, band.twice, [&](const RowEquations& a, std::size_t c, float* next) {
+      relax(a, second_step, {band.once, c, y}, next);
     });
+  }
+
+  static void restrict_rows(Level& level, int y, Band& band, Level& coarse) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::copy_n(band.twice.row(c, y), level.a.width, level.next[c].row(y));
+      float* sums = coarse.b[c].row(y / 2);
+      if (y % 2 == 0) std::fill_n(sums, coarse.a.width, 0.f);
+      find_residual({level, c, y}, {band.twice, c, y}, band.residual.data());
+      add_pairs(band.residual.data(), level.a.width, sums);
+    }
   }
 
   void solve_coarsest() {
@@ -288,21 +321,24 @@ class Multigrid {
 
   int threads_;
   std::vector<Level> levels_;
+  std::vector<Band> bands_;  ///< of each thread
 };
-
-}  // namespace
 
 PixelCouplings::PixelCouplings(int w, int h) : width(w), height(h), screen(w, h), right(w, h), below(w, h) {}
 
-PixelPlanes solve_screened_poisson(PixelCouplings couplings, PixelPlanes b, int threads) {
-  return Multigrid(std::move(couplings), std::move(b), threads).solve();
-}
+ScreenedPoisson::ScreenedPoisson(int width, int height, int threads)
+    : multigrid_(std::make_unique<Multigrid>(width, height, threads)) {}
+ScreenedPoisson::~ScreenedPoisson() = default;
+PixelCouplings& ScreenedPoisson::couplings() { return multigrid_->finest().a; }
+PixelPlanes& ScreenedPoisson::b() { return multigrid_->finest().b; }
+PixelPlanes& ScreenedPoisson::scratch() { return multigrid_->finest().next; }
+PixelPlanes ScreenedPoisson::solve() { return multigrid_->solve(); }
 
 std::uint64_t bytes_to_solve(int width, int height, int threads) {
   constexpr std::uint64_t planes_of_level =
       3 + 1 + 3 * 3;  // couplings, their inverse diagonal, b, x and next
-  std::uint64_t bytes = static_cast<std::uint64_t>(threads) * 2 *
-                        PixelPlane::bytes_of(width, rows_of_a_strip + 2 * rows_around);
+  constexpr int rows_of_a_band = 24 + 1;
+  std::uint64_t bytes = static_cast<std::uint64_t>(threads) * PixelPlane::bytes_of(width, rows_of_a_band);
   for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
     bytes += planes_of_level * PixelPlane::bytes_of(w, h);
     if (std::max(w, h) <= coarsest_side) return bytes;

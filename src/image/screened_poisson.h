@@ -3,29 +3,36 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "castray/large_allocator.h"
 
 namespace castray {
 
-/// A value of every pixel, with a border of zeros one pixel wide.
+/// A value of every pixel, with a border of zeros one pixel wide. Rows begin at cache lines.
 struct PixelPlane {
+  static constexpr int line = 16;  ///< values of a cache line
+
   int stride = 0;
   LargeVector<float> values;
 
   PixelPlane() = default;
-  PixelPlane(int width, int height)
-      : stride(width + 2),
-        values(static_cast<std::size_t>(width + 2) * static_cast<std::size_t>(height + 2)) {}
+  PixelPlane(int width, int height) : stride(stride_of(width)), values(size_of(width, height)) {}
   static std::uint64_t bytes_of(int width, int height) {
-    return bytes_in_large_pages(sizeof(float) * static_cast<std::uint64_t>(width + 2) *
-                                static_cast<std::uint64_t>(height + 2));
+    return bytes_in_large_pages(sizeof(float) * size_of(width, height));
   }
   /// Row -1 <= y <= height, so that columns -1 <= x <= width can be read.
   float* row(int y) {
-    return &values[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride) + 1];
+    return &values[line + static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride)];
   }
   const float* row(int y) const { return const_cast<PixelPlane*>(this)->row(y); }
+
+ private:
+  /// The zeros after a row are those before the next.
+  static int stride_of(int width) { return (width + line) / line * line; }
+  static std::size_t size_of(int width, int height) {
+    return line + static_cast<std::size_t>(stride_of(width)) * static_cast<std::size_t>(height + 2);
+  }
 };
 using PixelPlanes = std::array<PixelPlane, 3>;
 
@@ -39,12 +46,30 @@ struct PixelCouplings {
   PixelCouplings(int width, int height);
 };
 
-/// Approximates the x at which the energy, minus 2 sum b_p x_p, is least, for three channels b. A fixed
-/// number of multigrid cycles from zero, so that x is a linear function of b and the same for any number of
-/// threads.
-PixelPlanes solve_screened_poisson(PixelCouplings couplings, PixelPlanes b, int threads);
+/// Solves for the x at which the energy, minus 2 sum b_p x_p, is least, for three channels b. Approximately,
+/// by a fixed number of multigrid cycles from zero, so that x is a linear function of b and the same for any
+/// number of threads.
+class ScreenedPoisson {
+ public:
+  ScreenedPoisson(int width, int height, int threads);
+  ~ScreenedPoisson();
+  ScreenedPoisson(const ScreenedPoisson&) = delete;
+  ScreenedPoisson& operator=(const ScreenedPoisson&) = delete;
 
-/// The memory that this takes, its arguments included.
+  /// To be filled in before `solve`, which leaves them as they are.
+  PixelCouplings& couplings();
+  PixelPlanes& b();
+  /// Memory that `solve` will need, for other uses before; its border must stay zero.
+  PixelPlanes& scratch();
+
+  PixelPlanes solve();
+
+ private:
+  class Multigrid;
+  std::unique_ptr<Multigrid> multigrid_;
+};
+
+/// The memory that this takes.
 std::uint64_t bytes_to_solve(int width, int height, int threads);
 
 }  // namespace castray
