@@ -33,6 +33,9 @@ struct Level {
   }
 };
 
+/// The end of the cache line in which a row of so many pixels ends.
+int end_of(int width) { return (width + PixelPlane::line - 1) / PixelPlane::line * PixelPlane::line; }
+
 /// The last rows of three channels between two sweeps, in the cache of a thread.
 class RecentRows {
  public:
@@ -50,16 +53,17 @@ struct Band {
   RecentRows once, twice;  ///< relaxed
   std::vector<float> residual;
 
-  explicit Band(int width) : once(width), twice(width), residual(static_cast<std::size_t>(width)) {}
+  explicit Band(int width) : once(width), twice(width), residual(static_cast<std::size_t>(end_of(width))) {}
 };
 
-/// What the equations of a row say of its values and of those around.
+/// What the equations of a row say of its values and of those around. Loops go to the end of its last cache
+/// line: the values after the last pixel are zero and stay so.
 struct RowEquations {
-  int width;
+  int end;
   const float *screen, *right, *below, *above, *inverse_diagonal, *b;
 
   RowEquations(const Level& level, std::size_t c, int y)
-      : width(level.a.width),
+      : end(end_of(level.a.width)),
         screen(level.a.screen.row(y)),
         right(level.a.right.row(y)),
         below(level.a.below.row(y)),
@@ -79,87 +83,150 @@ struct RowsAround {
 };
 
 /// A damped Jacobi step from zero.
-CASTRAY_VECTOR_CLONES
 void start(const RowEquations& a, float* __restrict next) {
-  for (int i = 0; i < a.width; ++i) next[i] = first_step * a.inverse_diagonal[i] * a.b[i];
+  for (int i = 0; i < a.end; ++i) next[i] = first_step * a.inverse_diagonal[i] * a.b[i];
 }
 
-/// A damped Jacobi step.
-CASTRAY_VECTOR_CLONES
-void relax(const RowEquations& a, float step, const RowsAround& from, float* __restrict next) {
+/// The value of pixel i after a damped Jacobi step.
+inline float relaxed(const RowEquations& a, float step, const RowsAround& from, int i) {
   const float *x = from.row, *up = from.up, *down = from.down;
-  for (int i = 0; i < a.width; ++i) {
-    const float pull = a.b[i] + ((a.right[i] * x[i + 1] + a.right[i - 1] * x[i - 1]) +
-                                 (a.below[i] * down[i] + a.above[i] * up[i]));
-    next[i] = x[i] + step * (a.inverse_diagonal[i] * pull - x[i]);
-  }
+  const float pull = a.b[i] + ((a.right[i] * x[i + 1] + a.right[i - 1] * x[i - 1]) +
+                               (a.below[i] * down[i] + a.above[i] * up[i]));
+  return x[i] + step * (a.inverse_diagonal[i] * pull - x[i]);
 }
 
-CASTRAY_VECTOR_CLONES
+void relax(const RowEquations& a, float step, const RowsAround& from, float* __restrict next) {
+  for (int i = 0; i < a.end; ++i) next[i] = relaxed(a, step, from, i);
+}
+
+/// From `next`, or from zero, so far in the direction of a relaxed row.
+void go_further(const RowEquations& a, const RowsAround& from, float further, bool from_zero,
+                float* __restrict next) {
+  if (from_zero)
+    for (int i = 0; i < a.end; ++i) next[i] = further * relaxed(a, first_step, from, i);
+  else
+    for (int i = 0; i < a.end; ++i) next[i] += further * (relaxed(a, first_step, from, i) - next[i]);
+}
+
 void find_residual(const RowEquations& a, const RowsAround& from, float* __restrict residual) {
   const float *x = from.row, *up = from.up, *down = from.down;
-  for (int i = 0; i < a.width; ++i)
+  for (int i = 0; i < a.end; ++i)
     residual[i] = (a.b[i] - a.screen[i] * x[i]) +
                   ((a.right[i] * (x[i + 1] - x[i]) + a.right[i - 1] * (x[i - 1] - x[i])) +
                    (a.below[i] * (down[i] - x[i]) + a.above[i] * (up[i] - x[i])));
 }
 
 /// Adds values summed over pairs of pixels.
-CASTRAY_VECTOR_CLONES
 void add_pairs(const float* values, int width, float* __restrict sums) {
-  const int pairs = width / 2;
+  const int pairs = end_of(width) / 2;
   for (int i = 0; i < pairs; ++i) sums[i] += values[2 * i] + values[2 * i + 1];
-  if (width % 2 == 1) sums[pairs] += values[width - 1];
 }
 
 /// x with the corrections of a coarser grid, each of which is that of two pixels.
-CASTRAY_VECTOR_CLONES
 void add_coarse(const float* x, const float* coarse, int width, float* __restrict sum) {
-  for (int i = 0; i + 1 < width; i += 2) {
-    sum[i] = x[i] + coarse[i / 2];
-    sum[i + 1] = x[i + 1] + coarse[i / 2];
+  const int pairs = end_of(width) / 2;
+  for (int i = 0; i < pairs; ++i) {
+    sum[2 * i] = x[2 * i] + coarse[i];
+    sum[2 * i + 1] = x[2 * i + 1] + coarse[i];
   }
-  if (width % 2 == 1) sum[width - 1] = x[width - 1] + coarse[width / 2];
-}
-
-/// next + further (x - next).
-CASTRAY_VECTOR_CLONES
-void go_further(const float* x, float further, int width, float* __restrict next) {
-  for (int i = 0; i < width; ++i) next[i] += further * (x[i] - next[i]);
 }
 
 CASTRAY_VECTOR_CLONES
 void invert(const PixelCouplings& a, int y, float* __restrict inverse) {
   const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
               *above = a.below.row(y - 1);
-  for (int x = 0; x < a.width; ++x) {
+  for (int x = 0; x < end_of(a.width); ++x) {
     const float diagonal = screen[x] + right[x] + right[x - 1] + below[x] + above[x];
     inverse[x] = diagonal > 0 ? 1 / diagonal : 0;
   }
 }
 
 /// Adds values, one after the other, to those of a coarser row.
-CASTRAY_VECTOR_CLONES
 void add_both(const float* values, int width, float* __restrict sums) {
-  const int pairs = width / 2;
+  const int pairs = end_of(width) / 2;
   for (int i = 0; i < pairs; ++i) sums[i] = (sums[i] + values[2 * i]) + values[2 * i + 1];
-  if (width % 2 == 1) sums[pairs] += values[width - 1];
-}
-
-CASTRAY_VECTOR_CLONES
-void add_every_second(const float* values, int count, float* __restrict sums) {
-  for (int i = 0; i < count; ++i) sums[i] += values[2 * i];
 }
 
 /// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks: with it a
 /// cycle lessens every error, whatever the couplings. Row y of the coarser grid.
+CASTRAY_VECTOR_CLONES
 void couple_coarse(const PixelCouplings& fine, int y, PixelCouplings& coarse) {
-  float *screen = coarse.screen.row(y), *right = coarse.right.row(y), *below = coarse.below.row(y);
-  for (float* row : {screen, right, below}) std::fill_n(row, coarse.width, 0.f);
+  float *screen = coarse.screen.row(y), *to_right = coarse.right.row(y), *to_below = coarse.below.row(y);
+  for (float* row : {screen, to_right, to_below}) std::fill_n(row, coarse.width, 0.f);
   for (int row = 2 * y; row < std::min(2 * y + 2, fine.height); ++row) {
+    const float* right = fine.right.row(row) + 1;
     add_both(fine.screen.row(row), fine.width, screen);
-    add_every_second(fine.right.row(row) + 1, coarse.width - 1, right);
-    if (row % 2 == 1 && row + 1 < fine.height) add_both(fine.below.row(row), fine.width, below);
+    for (int x = 0; x + 1 < coarse.width; ++x) to_right[x] += right[2 * x];
+    if (row % 2 == 1 && row + 1 < fine.height) add_both(fine.below.row(row), fine.width, to_below);
+  }
+}
+
+/// A damped Jacobi step from x to `next`.
+CASTRAY_VECTOR_CLONES
+void step_all(Level& level, float step) {
+  for (std::size_t c = 0; c < 3; ++c)
+    for (int y = 0; y < level.a.height; ++y)
+      relax({level, c, y}, step, {level.x[c], y}, level.next[c].row(y));
+}
+
+/// `write(equations, channel, to)` of row y; rows around the image are zero.
+template <class Write>
+void write_rows(const Level& level, int y, RecentRows& to, Write write) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    float* row = to.row(c, y);
+    if (y < 0 || y >= level.a.height)
+      std::fill_n(row, end_of(level.a.width), 0.f);
+    else
+      write(RowEquations(level, c, y), c, row);
+    row[level.a.width] = 0;
+  }
+}
+
+/// The second of two steps downwards, and the first upwards.
+void relax_rows(const Level& level, int y, Band& band) {
+  write_rows(level, y, band.twice, [&](const RowEquations& a, std::size_t c, float* next) {
+    relax(a, second_step, {band.once, c, y}, next);
+  });
+}
+
+void restrict_rows(Level& level, int y, Band& band, Level& coarse) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::copy_n(band.twice.row(c, y), end_of(level.a.width), level.next[c].row(y));
+    float* sums = coarse.b[c].row(y / 2);
+    if (y % 2 == 0) std::fill_n(sums, end_of(level.a.width) / 2, 0.f);
+    find_residual({level, c, y}, {band.twice, c, y}, band.residual.data());
+    add_pairs(band.residual.data(), level.a.width, sums);
+  }
+}
+
+/// Two Jacobi steps into `next`, and the sums of the residual over blocks of 2x2 as the coarser grid's b.
+/// `from_zero`: from zero, else from x. Each sweep follows the one before it at a distance of one row, so
+/// that memory is read once.
+CASTRAY_VECTOR_CLONES
+void sweep_down(Level& level, bool from_zero, Band& band, Level& coarse) {
+  for (int y = band.begin - 2; y < band.end + 2; ++y) {
+    write_rows(level, y, band.once, [&](const RowEquations& a, std::size_t c, float* next) {
+      if (from_zero)
+        start(a, next);
+      else
+        relax(a, first_step, {level.x[c], y}, next);
+    });
+    if (y >= band.begin) relax_rows(level, y - 1, band);
+    if (y >= band.begin + 2) restrict_rows(level, y - 2, band, coarse);
+  }
+}
+
+/// Corrections of coarser grids, added to x, and two Jacobi steps. `further`: how far `next` goes in the
+/// direction of the result, from where it is or from zero.
+CASTRAY_VECTOR_CLONES
+void sweep_up(Level& level, float further, bool from_zero, Band& band, const Level& coarse) {
+  for (int y = band.begin - 2; y < band.end + 2; ++y) {
+    write_rows(level, y, band.once, [&](const RowEquations&, std::size_t c, float* next) {
+      add_coarse(level.x[c].row(y), coarse.x[c].row(y / 2), level.a.width, next);
+    });
+    if (y >= band.begin) relax_rows(level, y - 1, band);
+    for (std::size_t c = 0; y >= band.begin + 2 && c < 3; ++c)
+      go_further({level, c, y - 2}, {band.twice, c, y - 2}, further, from_zero, level.next[c].row(y - 2));
   }
 }
 
@@ -221,8 +288,8 @@ class ScreenedPoisson::Multigrid {
   /// Cycles on level i and coarser ones, from zero.
   void cycles(std::size_t i, std::span<const float> steps) {
     for (std::size_t k = 0; k < steps.size(); ++k) {
-      go_down(i, k > 0);
-      go_up(i, steps[k], k > 0);
+      go_down(i, k == 0);
+      go_up(i, steps[k], k == 0);
     }
   }
   std::span<const float> steps_of(const Level& coarse) const {
@@ -230,23 +297,10 @@ class ScreenedPoisson::Multigrid {
     return coarse_steps;
   }
 
-  /// The first half of a cycle, with the cycles of coarser grids: two Jacobi steps, and the sums of the
-  /// residual over blocks of 2x2 as the coarser grid's b. `relaxed`: from x, else from zero. Each sweep
-  /// follows the one before it at a distance of one row, so that memory is read once.
-  void go_down(std::size_t i, bool relaxed) {
+  /// The first half of a cycle, with the cycles of coarser grids. `next` is then x before the cycle.
+  void go_down(std::size_t i, bool from_zero) {
     Level &level = levels_[i], &coarse = levels_[i + 1];
-    for_bands(level, [&](Band& band) {
-      for (int y = band.begin - 2; y < band.end + 2; ++y) {
-        write_rows(level, y, band.once, [&](const RowEquations& a, std::size_t c, float* next) {
-          if (relaxed)
-            relax(a, first_step, {level.x[c], y}, next);
-          else
-            start(a, next);
-        });
-        if (y >= band.begin) relax_rows(level, y - 1, band);
-        if (y >= band.begin + 2) restrict_rows(level, y - 2, band, coarse);
-      }
-    });
+    for_bands(level, [&](Band& band) { sweep_down(level, from_zero, band, coarse); });
     std::swap(level.x, level.next);
     if (i + 2 < levels_.size())
       cycles(i + 1, steps_of(coarse));
@@ -254,69 +308,20 @@ class ScreenedPoisson::Multigrid {
       solve_coarsest();
   }
 
-  /// The second half: corrections of coarser grids, and two Jacobi steps. `further`: how far to go from the x
-  /// before the cycle, which `go_down` has put into `next`, in the direction of the result. `relaxed`: that x
-  /// counts, else zero in its place.
-  void go_up(std::size_t i, float further, bool relaxed) {
+  void go_up(std::size_t i, float further, bool from_zero) {
     Level &level = levels_[i], &coarse = levels_[i + 1];
-    for_bands(level, [&](Band& band) {
-      for (int y = band.begin - 2; y < band.end + 2; ++y) {
-        write_rows(level, y, band.once, [&](const RowEquations& a, std::size_t c, float* next) {
-          add_coarse(level.x[c].row(y), coarse.x[c].row(y / 2), a.width, next);
-        });
-        if (y >= band.begin) relax_rows(level, y - 1, band);
-        for (std::size_t c = 0; y >= band.begin + 2 && c < 3; ++c) {
-          float *next = level.next[c].row(y - 2), *x = band.once.row(c, y - 3);
-          relax({level, c, y - 2}, first_step, {band.twice, c, y - 2}, x);
-          if (!relaxed) std::fill_n(next, level.a.width, 0.f);
-          go_further(x, further, level.a.width, next);
-        }
-      }
-    });
+    for_bands(level, [&](Band& band) { sweep_up(level, further, from_zero, band, coarse); });
     std::swap(level.x, level.next);
-  }
-
-  /// `write(equations, channel, to)` of row y; rows around the image are zero.
-  template <class Write>
-  static void write_rows(const Level& level, int y, RecentRows& to, Write write) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      float* row = to.row(c, y);
-      if (y < 0 || y >= level.a.height)
-        std::fill_n(row, level.a.width, 0.f);
-      else
-        write({level, c, y}, c, row);
-      row[level.a.width] = 0;
-    }
-  }
-
-  /// The second of two steps downwards, and the first upwards.
-  static void relax_rows(const Level& level, int y, Band& band) {
-    write_rows(level, y, band.twice, [&](const RowEquations& a, std::size_t c, float* next) {
-      relax(a, second_step, {band.once, c, y}, next);
-    });
-  }
-
-  static void restrict_rows(Level& level, int y, Band& band, Level& coarse) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      std::copy_n(band.twice.row(c, y), level.a.width, level.next[c].row(y));
-      float* sums = coarse.b[c].row(y / 2);
-      if (y % 2 == 0) std::fill_n(sums, coarse.a.width, 0.f);
-      find_residual({level, c, y}, {band.twice, c, y}, band.residual.data());
-      add_pairs(band.residual.data(), level.a.width, sums);
-    }
   }
 
   void solve_coarsest() {
     Level& level = levels_.back();
-    for (std::size_t c = 0; c < 3; ++c) {
-      PixelPlane &x = level.x[c], &next = level.next[c];
-      const auto step_all = [&](float step) {
-        for (int y = 0; y < level.a.height; ++y) relax({level, c, y}, step, {x, y}, next.row(y));
-        std::swap(x, next);
-      };
-      std::fill(x.values.begin(), x.values.end(), 0.f);
-      for (int sweep = 0; sweep <= coarsest_sweeps; ++sweep) step_all(first_step), step_all(second_step);
-    }
+    for (PixelPlane& x : level.x) std::fill(x.values.begin(), x.values.end(), 0.f);
+    for (int sweep = 0; sweep <= coarsest_sweeps; ++sweep)
+      for (const float step : {first_step, second_step}) {
+        step_all(level, step);
+        std::swap(level.x, level.next);
+      }
   }
 
   int threads_;
