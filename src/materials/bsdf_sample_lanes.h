@@ -18,10 +18,9 @@ struct Bsdf {
                 ///< below 0: a thin wall, of index -eta
   Uint albedo;  ///< offset of its lobe's table, where it has one
   const KernelAlbedo* albedos;
-  /// Principled: slot_metal_sheen and slot_coat; conductor, where `stretched`: slot_stretch. In their lanes
-  /// alone.
-  Float own[2];
-  bool stretched;                             ///< whether there are conductors whose lobes are not round
+  Float own[2];      ///< principled: slot_metal_sheen and slot_coat; in their lanes alone
+  Float stretch[2];  ///< where `stretched`: slot_stretch or slot_layered_stretch, 0 in lanes of round lobes
+  bool stretched;    ///< whether there are lobes that are not round
   bool scatters_again;                        ///< whether there is a material with that trait
   Uint record;                                ///< offset of the material
   const KernelMaterial *materials, *indices;  ///< as in MaterialTables

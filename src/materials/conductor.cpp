@@ -19,33 +19,22 @@ const MaterialDescriptor& conductor_descriptor() {
       .name = "conductor",
       .text = "A metal, by a constant reflectance or by its index of refraction: GGX facets, or a mirror.",
       .formula = "F D G2 / (4 cos_i cos_o), F by the `reflectance`; more with `multiple_scattering`",
-      .keys = with_common_keys(
-          {{.name = "reflectance",
-            .kind = MaterialKey::Kind::color,
-            .field = &Material::reflectance,
-            .range = unit_range,
-            .parameter = SurfaceParameter::reflectance,
-            .slot = slot_ks,
-            .text = "At all angles, or a metal by name or by index [0.8, 0.8, 0.8].",
-            .brief = true},
-           roughness_key(),
-           alpha_key(),
-           {.name = "anisotropy",
-            .kind = MaterialKey::Kind::number,
-            .field = &Material::anisotropy,
-            .range = {.least = 0, .greatest = 0.99},
-            .text = "1 - the ratio of the lobe's widths, whose geometric mean is alpha [0]."},
-           {.name = "anisotropy_rotation",
-            .kind = MaterialKey::Kind::number,
-            .field = &Material::anisotropy_rotation,
-            .range = float_range,
-            .text = "Degrees from the direction in which u grows, towards that of v, to the one in which the "
-                    "lobe is wide [0]."},
-           multiple_scattering_key()}),
+      .keys = with_common_keys({{.name = "reflectance",
+                                 .kind = MaterialKey::Kind::color,
+                                 .field = &Material::reflectance,
+                                 .range = unit_range,
+                                 .parameter = SurfaceParameter::reflectance,
+                                 .slot = slot_ks,
+                                 .text = "At all angles, or a metal by name or by index [0.8, 0.8, 0.8].",
+                                 .brief = true},
+                                roughness_key(),
+                                alpha_key(),
+                                anisotropy_key(),
+                                anisotropy_rotation_key(),
+                                multiple_scattering_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
-               (has_narrow_lobe(m) ? trait_focuses : 0u) |
-               (m.anisotropy > 0 && !has_smooth_lobe(m) ? trait_stretched : 0u);
+               (has_narrow_lobe(m) ? trait_focuses : 0u) | (has_stretched_lobe(m) ? trait_stretched : 0u);
       },
       .albedo = [](const SurfaceValues<double>& v) { return v.color(slot_ks); },
       .finish =

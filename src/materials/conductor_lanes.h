@@ -78,7 +78,9 @@ struct Conductor : ModelDefaults {
             d / (Float(2.f) * fma(cap, wo.z, ggx_stretched_length(alpha, wo)))};
   }
 
-  CASTRAY_INLINE static GgxWidths widths(const Bsdf& b) { return ggx_widths(b.alpha, b.own[0], b.own[1]); }
+  CASTRAY_INLINE static GgxWidths widths(const Bsdf& b) {
+    return ggx_widths(b.alpha, b.stretch[0], b.stretch[1]);
+  }
 
   // Not inlined: few scenes need them.
 

@@ -1,6 +1,7 @@
 #include "materials/descriptor.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "materials/ggx.h"
 #include "materials/material_list.h"
@@ -63,6 +64,11 @@ std::vector<MaterialKey> with_common_keys(std::vector<MaterialKey> keys) {
   return keys;
 }
 
+MaterialKey optional_in_hash(MaterialKey key) {
+  key.optional_in_hash = true;
+  return key;
+}
+
 MaterialKey vertex_colors_key() {
   return {.name = "vertex_colors",
           .kind = MaterialKey::Kind::flag,
@@ -109,6 +115,24 @@ MaterialKey absorption_key() {
               "left after a distance [0, 0, 0]."};
 }
 
+MaterialKey anisotropy_key() {
+  return {.name = "anisotropy",
+          .kind = MaterialKey::Kind::number,
+          .field = &Material::anisotropy,
+          .range = {.least = 0, .greatest = 0.99},
+          .text = "1 - the ratio of the lobe's widths, whose geometric mean is alpha [0]."};
+}
+
+MaterialKey anisotropy_rotation_key() {
+  return {.name = "anisotropy_rotation",
+          .kind = MaterialKey::Kind::number,
+          .field = &Material::anisotropy_rotation,
+          .range = float_range,
+          .text =
+              "Degrees from the direction in which u grows, towards that of v, to the one in which the "
+              "lobe is wide [0]."};
+}
+
 MaterialKey multiple_scattering_key() {
   return {.name = "multiple_scattering",
           .kind = MaterialKey::Kind::flag,
@@ -117,6 +141,13 @@ MaterialKey multiple_scattering_key() {
 }
 
 bool has_smooth_lobe(const Material& m) { return Ggx<double>{m.alpha}.smooth() && !m.has_alpha_map(); }
+
+bool has_stretched_lobe(const Material& m) {
+  const bool has_key = m.type == MaterialType::conductor || m.type == MaterialType::principled;
+  return has_key && m.anisotropy > 0 && !has_smooth_lobe(m);
+}
+
+double lobe_aspect(const Material& m) { return has_stretched_lobe(m) ? std::sqrt(1 - m.anisotropy) : 1; }
 
 bool has_narrow_lobe(const Material& m) {
   constexpr double narrow_below = 0.1;  // where paths of one's own begin to be worth more than shared ones

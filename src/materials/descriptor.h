@@ -24,6 +24,8 @@ struct MaterialKey {
   std::optional<ParameterSlot> slot{};          ///< of the kernels' values
   std::string_view text{};                      ///< for the schema, with the default in brackets
   bool brief = false;                           ///< told by `castray info` even where it is the default
+  bool optional_in_hash = false;  ///< no part of a scene's hash where it is the default; for keys that came
+                                  ///< after films were made
 };
 
 class LobeAlbedo;
@@ -54,6 +56,9 @@ const MaterialDescriptor& descriptor_of(MaterialType type);
 /// `keys`, and those that every material has.
 std::vector<MaterialKey> with_common_keys(std::vector<MaterialKey> keys);
 
+/// The key, with optional_in_hash.
+MaterialKey optional_in_hash(MaterialKey key);
+
 MaterialKey vertex_colors_key();
 
 /// The keys of the width of a GGX distribution.
@@ -64,6 +69,10 @@ MaterialKey roughness_key();
 MaterialKey ior_key();
 MaterialKey absorption_key();
 
+/// Of metals, and of lobes of principled materials, that are not round.
+MaterialKey anisotropy_key();
+MaterialKey anisotropy_rotation_key();
+
 /// Of metals whose facets reflect light more than once.
 MaterialKey multiple_scattering_key();
 
@@ -73,6 +82,12 @@ std::uint32_t traits_of(const Material& material);
 /// Whether GGX lobes of this material are perfectly smooth. An image of alpha or roughness never makes one
 /// so: its alpha is at least Ggx::smooth_below.
 bool has_smooth_lobe(const Material& material);
+
+/// Whether GGX lobes of this material are neither smooth nor round.
+bool has_stretched_lobe(const Material& material);
+
+/// Ggx::aspect of a material's lobes; 1 where it is smooth, whose direction nothing shows.
+double lobe_aspect(const Material& material);
 
 /// Whether GGX lobes of this material are nearly as narrow as a mirror's, though not smooth.
 bool has_narrow_lobe(const Material& material);

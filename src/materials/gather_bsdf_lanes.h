@@ -5,6 +5,16 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// How lobes lie that are not round.
+template <uint32_t features>
+CASTRAY_INLINE void gather_stretch(const MaterialTables& tables, const Parameters<features>& p, Bsdf& b) {
+  const Mask stretched = has_traits(tables, b.record, trait_stretched);
+  const Mask metal = b.is(MaterialType::conductor);
+  for (int k = 0; k < 2; ++k)
+    b.stretch[k] = select(
+        stretched, select(metal, p.value[slot_stretch + k], p.value[slot_layered_stretch + k]), Float(0.f));
+}
+
 /// The BSDF of each lane. `material`: the offset of its record, with the top bit where it is seen from the
 /// front.
 template <uint32_t features>
@@ -33,6 +43,7 @@ CASTRAY_INLINE Bsdf gather_bsdf(const MaterialTables& tables, Uint material, con
     b.own[0] = p.value[slot_metal_sheen];
     b.own[1] = p.value[slot_coat];
     b.stretched = tables.stretched;
+    if (b.stretched) gather_stretch(tables, p, b);
   } else {
     const float* values = fields_of(table, &KernelMaterial::value);
     b.ks = gather_vec(values + slot_ks, record);

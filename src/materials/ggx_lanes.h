@@ -69,6 +69,9 @@ CASTRAY_INLINE Float ggx_stretched_length(const GgxWidths& a, Vec w) {
 CASTRAY_INLINE Float ggx_distribution(const GgxWidths& a, Vec h) {
   return Float(1.f / pi) / square(a.alpha * length_squared(a.narrow(h)));
 }
+CASTRAY_INLINE Float ggx_reflection_pdf(const GgxWidths& a, Vec wo, Vec h, Float cap) {
+  return ggx_distribution(a, h) / (Float(2.f) * fma(cap, wo.z, ggx_stretched_length(a, wo)));
+}
 CASTRAY_INLINE Float ggx_cap_scale(const GgxWidths& a, Vec wo) { return ggx_cap_scale(a.least, wo); }
 CASTRAY_INLINE Vec ggx_sample_normal(const GgxWidths& a, Vec wo, Float u, Float v, Float cap) {
   const Vec h = ggx_sample_cap(a.widen(wo) * (Float(1.f) / ggx_stretched_length(a, wo)), u, v, cap);

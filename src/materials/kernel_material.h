@@ -30,8 +30,9 @@ enum ParameterSlot : int {
   slot_ks = 3,     ///< microfacet, principled: F0; conductor: reflectance
   slot_alpha = 6,  ///< GGX width; 0 where the lobe is treated as perfectly smooth
   slot_emission = 7,
-  slot_metal_sheen = 10,  ///< principled: metallic and sheen, as a pair of 16 bits each
-  slot_coat = 11,         ///< principled: clearcoat and its roughness, likewise
+  slot_metal_sheen = 10,     ///< principled: metallic and sheen, as a pair of 16 bits each
+  slot_coat = 11,            ///< principled: clearcoat and its roughness, likewise
+  slot_layered_stretch = 7,  ///< principled, where its lobes are not round: likewise; they do not emit
   slot_stretch = 10,  ///< conductor: how far its lobe is from round, (1/r - r) / 2 for widths alpha / r and
                       ///< alpha r, times cosine and sine of twice the angle from the shading frame's x
                       ///< axis to where it is wide
@@ -70,9 +71,10 @@ inline constexpr float least_clearcoat_alpha = 1e-3f;
 struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
-  float ior;           ///< of a thin wall, times -1
-  float eta[3], k[3];  ///< conductor: complex index of refraction; eta 0: constant reflectance
-  float turn[2];       ///< conductor: cosine and sine of the angle from where u grows to where lobes are wide
+  float ior;                  ///< of a thin wall, times -1
+  float eta[3], k[3];         ///< conductor: complex index of refraction; eta 0: constant reflectance
+  float stretch;              ///< how far its lobe is from round, the length of slot_stretch
+  float turn[2];              ///< cosine and sine of the angle from where u grows to where lobes are wide
   float absorption[3];        ///< dielectric: inside it, over a unit of length in scene space
   uint32_t medium;            ///< dielectric: 1 + the material's index; else 0
   uint32_t type;              ///< MaterialType

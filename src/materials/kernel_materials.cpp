@@ -34,9 +34,9 @@ float pack(double first, double second) {
   return std::bit_cast<float>(bits(first) | bits(second) << 16);
 }
 
-/// How far a metal's lobe is from round; see slot_stretch.
+/// How far a lobe is from round; see slot_stretch.
 float stretch_of(const Material& m) {
-  const double r = std::sqrt(1 - m.anisotropy);
+  const double r = lobe_aspect(m);
   return static_cast<float>((1 / r - r) / 2);
 }
 
@@ -77,8 +77,9 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     values[slot_alpha] = LobeAlbedoRows::alpha_of(row);
     descriptor.finish(m, (*rows_)[row], values.data());
   } else if (has_lobe_table(m)) {
-    const LobeAlbedo& lobe = lobes_.of(values[slot_alpha]);
-    k.albedo = albedo_offset(values[slot_alpha], lobe);
+    const LobeWidths widths{values[slot_alpha], lobe_aspect(m)};
+    const LobeAlbedo& lobe = lobes_.of(widths.first, widths.second);
+    k.albedo = albedo_offset(widths, lobe);
     descriptor.finish(m, lobe, values.data());
   }
   if (has_clearcoat_rows(m)) {
@@ -88,7 +89,7 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
         static_cast<double>(clearcoat_row(m.clearcoat_roughness)) / LobeAlbedoRows::steps;
   } else if (m.type == MaterialType::principled) {
     const double alpha = clearcoat_alpha(m.clearcoat_roughness);
-    k.clearcoat_albedo = albedo_offset(alpha, lobes_.of(alpha));
+    k.clearcoat_albedo = albedo_offset({alpha, 1}, lobes_.of(alpha));
   }
   detail.albedo = k.albedo;
   detail.albedo_rows = k.albedo_rows;
@@ -99,7 +100,12 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
                  [](double v) { return static_cast<float>(v); });
   k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
   k.value[slot_coat] = pack(values[slot_clearcoat], values[slot_clearcoat_roughness]);
-  if (k.traits & trait_stretched) detail.value[slot_stretch] = k.value[slot_stretch] = stretch_of(m);
+  if (k.traits & trait_stretched) {
+    const int slot = m.type == MaterialType::conductor ? slot_stretch : slot_layered_stretch;
+    k.stretch = stretch_of(m);
+    k.value[slot] = k.stretch;
+    k.value[slot + 1] = 0;
+  }
 
   detail.normal = single_map(scene, m.map(SurfaceParameter::normal), 1);
   detail.bump = single_map(scene, m.map(SurfaceParameter::bump), static_cast<float>(1 / scene.unit));
@@ -139,9 +145,9 @@ MaterialTables KernelMaterials::tables() const {
           .scatters_again = has_any(trait_scatters_again)};
 }
 
-std::uint32_t KernelMaterials::albedo_offset(double alpha, const LobeAlbedo& lobe) {
+std::uint32_t KernelMaterials::albedo_offset(const LobeWidths& widths, const LobeAlbedo& lobe) {
   const auto [found, is_new] =
-      albedo_offsets_.try_emplace(alpha, static_cast<std::uint32_t>(albedos.size() * albedo_floats));
+      albedo_offsets_.try_emplace(widths, static_cast<std::uint32_t>(albedos.size() * albedo_floats));
   if (is_new) albedos.push_back(kernel_albedo(lobe));
   return found->second;
 }

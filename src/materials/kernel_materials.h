@@ -28,7 +28,7 @@ class KernelMaterials {
 
  private:
   void add(const Scene& scene, const Material& m);
-  std::uint32_t albedo_offset(double alpha, const LobeAlbedo& lobe);
+  std::uint32_t albedo_offset(const LobeWidths& widths, const LobeAlbedo& lobe);
   std::vector<KernelMap> maps_of(const Scene& scene, const Material& m);
   KernelMap map_of(const Scene& scene, const TextureMap& map);
   KernelTexture kernel_texture(const Texture& texture);
@@ -38,7 +38,7 @@ class KernelMaterials {
   const KernelMap* single_map(const Scene& scene, const TextureMap& map, float gain);
 
   LobeAlbedos lobes_;
-  std::map<double, std::uint32_t> albedo_offsets_;  ///< by alpha
+  std::map<LobeWidths, std::uint32_t> albedo_offsets_;  ///< by alpha
   std::optional<LobeAlbedoRows> rows_;
   std::uint32_t first_row_ = 0;
   std::deque<std::vector<KernelMap>> maps_;  ///< of each of `details`

@@ -11,36 +11,52 @@ namespace {
 /// Of quadrature and interpolation. Taken off, so that what is left for the base is never too much.
 constexpr double error_bound = 2e-4;
 
-/// The split albedo at one cosine, by the midpoint rule on the unit square of the lobe's own sampling, finer
-/// towards u.x = 1 where narrow lobes have their tail.
-LobeAlbedo::Node albedo_at(const Ggx<double>& ggx, double cosine) {
-  if (ggx.smooth()) return {1 - schlick_weight(cosine), 0};
-  constexpr int caps = 48, azimuths = 32;  // the integrand is even in the azimuth: half a turn will do
-  const Vec3d wo(std::sqrt(1 - cosine * cosine), 0, cosine);
+/// The split albedo of light to wo, by the midpoint rule on the unit square of the lobe's own sampling, finer
+/// towards u.x = 1 where narrow lobes have their tail. Where wo is at azimuth 0, whose plane makes
+/// the lobe its own mirror image, half a turn about the normal will do: `turn` is 0.5, else 1.
+LobeAlbedo::Node albedo_at(const Ggx<double>& ggx, const Vec3d& wo, double turn) {
+  if (ggx.smooth()) return {1 - schlick_weight(wo.z), 0};
+  constexpr int caps = 48;
+  const int azimuths = turn < 1 ? 32 : 64;
   const double cap = ggx.cap_scale(wo);
   double a = 0, b = 0;
   for (int i = 0; i < caps; ++i)
     for (int j = 0; j < azimuths; ++j) {
       const double v = 1 - (i + 0.5) / caps;
-      const Vec3d h = ggx.sample_normal(wo, {1 - v * v, (j + 0.5) / (2 * azimuths)}, cap);
+      const Vec3d h = ggx.sample_normal(wo, {1 - v * v, turn * (j + 0.5) / azimuths}, cap);
       const Vec3d wi = reflect(wo, h);
       if (!(wi.z > 0)) continue;
       const double weight = 2 * v * ggx.reflection_weight(wo, wi, cap), s = schlick_weight(dot(wo, h));
       a += weight * (1 - s);
       b += weight * s;
     }
-  constexpr double n = caps * azimuths;
+  const double n = caps * azimuths;
   return {a / n, std::max(1 - a / n - b / n - error_bound, 0.0)};
+}
+
+/// The least of all azimuths of wo.
+LobeAlbedo::Node least_albedo_at(const Ggx<double>& ggx, double cosine) {
+  const double sine = std::sqrt(1 - cosine * cosine);
+  if (ggx.aspect == 1) return albedo_at(ggx, {sine, 0, cosine}, 0.5);
+  LobeAlbedo::Node least{1, 1};
+  constexpr int steps = 2;  // of a quarter of a turn; the others are alike
+  for (int i = 0; i <= steps; ++i) {
+    const double phi = pi<double> / 2 * i / steps;
+    const LobeAlbedo::Node node =
+        albedo_at(ggx, {sine * std::cos(phi), sine * std::sin(phi), cosine}, i == 0 ? 0.5 : 1);
+    least = {std::min(least.a, node.a), std::min(least.lost, node.lost)};
+  }
+  return least;
 }
 
 double mix(double low, double high, double t) { return low + (high - low) * t; }
 
 }  // namespace
 
-LobeAlbedo::LobeAlbedo(double alpha) {
-  const Ggx<double> ggx{alpha};
+LobeAlbedo::LobeAlbedo(double alpha, double aspect) {
+  const Ggx<double> ggx{alpha, true, aspect};
   for (int i = 0; i <= intervals; ++i)
-    nodes_[static_cast<std::size_t>(i)] = albedo_at(ggx, std::max(cosine<double>(i), 1e-9));
+    nodes_[static_cast<std::size_t>(i)] = least_albedo_at(ggx, std::max(cosine<double>(i), 1e-9));
   find_mean();
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "castray/vec.h"
@@ -26,8 +27,10 @@ class LobeAlbedo {
  public:
   static constexpr int intervals = 128;
 
-  /// Computed in double by quadrature, about 5 ms. `alpha` is GGX's width; 0 is a mirror.
-  explicit LobeAlbedo(double alpha);
+  /// Computed in double by quadrature, about 5 ms. `alpha` is GGX's width; 0 is a mirror. Of a lobe that is
+  /// not round (Ggx::aspect), a and lost are the least of all azimuths, so that what is left is never too
+  /// much; five times as long.
+  explicit LobeAlbedo(double alpha, double aspect = 1);
 
   /// The table between `low` (t = 0) and `high` (t = 1).
   LobeAlbedo(const LobeAlbedo& low, const LobeAlbedo& high, double t);
@@ -87,13 +90,20 @@ inline Vec3d base_under(const Vec3d& kd, const Vec3d& f0, const LobeAlbedo& coat
 /// less than least_left_for_base, it is only part of the light.
 Vec3d scattered_again(const Vec3d& mean_fresnel, const LobeAlbedo& lobe);
 
-/// Tables by alpha, each computed once. References stay valid.
+/// Of a lobe: alpha, and Ggx::aspect.
+using LobeWidths = std::pair<double, double>;
+
+/// Tables, each computed once. References stay valid.
 class LobeAlbedos {
  public:
-  const LobeAlbedo& of(double alpha) { return tables_.try_emplace(alpha, alpha).first->second; }
+  const LobeAlbedo& of(double alpha, double aspect = 1) {
+    const auto found = tables_.find({alpha, aspect});
+    if (found != tables_.end()) return found->second;
+    return tables_.try_emplace({alpha, aspect}, alpha, aspect).first->second;
+  }
 
  private:
-  std::map<double, LobeAlbedo> tables_;
+  std::map<LobeWidths, LobeAlbedo> tables_;
 };
 
 /// Tables for what an image of alpha can say: alpha is rounded to (row / steps)^2, as fine in roughness as 8

@@ -44,6 +44,8 @@ const MaterialDescriptor& principled_descriptor() {
            absorption_key(),
            roughness_key(),
            alpha_key(),
+           optional_in_hash(anisotropy_key()),
+           optional_in_hash(anisotropy_rotation_key()),
            multiple_scattering_key(),
            {.name = "sheen",
             .kind = Kind::number,
@@ -67,11 +69,11 @@ const MaterialDescriptor& principled_descriptor() {
             .slot = slot_clearcoat_roughness,
             .text = "Of the coat; its alpha is the square, at least 0.001 [0]."}}),
       .traits = [](const Material& m) -> std::uint32_t {
-        const bool bare_metal =
-            m.metallic == 1 && !m.map(SurfaceParameter::metallic).used() && m.clearcoat == 0;
+        const bool bare_metal = m.is_bare_metal() && m.clearcoat == 0;
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
                (bare_metal && has_narrow_lobe(m) ? trait_focuses : 0u) |
-               (m.multiple_scattering ? trait_scatters_again : 0u);
+               (m.multiple_scattering ? trait_scatters_again : 0u) |
+               (has_stretched_lobe(m) ? trait_stretched : 0u);
       },
       .albedo =
           [](const SurfaceValues<double>& v) {

@@ -57,7 +57,7 @@ struct Principled {
                                            : Vec3<T>(),
         .sheen = static_cast<T>(values.at(slot_sheen) * (1 - metallic)),
         .clearcoat = static_cast<T>(values.at(slot_clearcoat)),
-        .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
+        .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking, static_cast<T>(lobe_aspect(m))},
         .coat = {static_cast<T>(clearcoat_alpha(values.at(slot_clearcoat_roughness))), m.correlated_masking},
         .albedo = lobes.own,
         .coat_albedo = lobes.clearcoat};

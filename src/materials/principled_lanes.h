@@ -30,7 +30,8 @@ struct Principled : ModelDefaults {
     const Mask of_coat = choice < layers.coat_share;
     const Mask of_lobe = ~of_coat & (choice < layers.coat_share + layers.lobe_share);
     const Float alpha = select(of_coat, layers.coat_alpha, b.alpha);
-    const Vec h = ggx_sample_normal(alpha, wo, u, v, ggx_cap_scale(alpha, wo));
+    const Vec h = b.stretched ? sample_stretched(b, alpha, of_coat, wo, u, v)
+                              : ggx_sample_normal(alpha, wo, u, v, ggx_cap_scale(alpha, wo));
     const Vec wi = select(of_coat | of_lobe, normalize(reflect(wo, h)), cosine_hemisphere(u, v));
     const BsdfSample rough = weigh(choose(wi.z > Float(0.f), layers.evaluate(wi), no_value()), wi);
     const Float passed = layers.left_by_coat(wo) * layers.left_by_sheen(wo);
@@ -53,6 +54,15 @@ struct Principled : ModelDefaults {
   }
 
  private:
+  /// A facet of the coat, which is round, or of the inner lobe.
+  CASTRAY_INLINE static Vec sample_stretched(const Bsdf& b, Float alpha, Mask of_coat, Vec wo, Float u,
+                                             Float v) {
+    const Float round(0.f);
+    const GgxWidths widths =
+        ggx_widths(alpha, select(of_coat, round, b.stretch[0]), select(of_coat, round, b.stretch[1]));
+    return ggx_sample_normal(widths, wo, u, v, ggx_cap_scale(widths, wo));
+  }
+
   /// The layers as they are seen from wo.
   struct Layers {
     const Bsdf& b;
@@ -104,7 +114,9 @@ struct Principled : ModelDefaults {
     CASTRAY_INLINE BsdfValue evaluate(Vec wi) const {
       const Vec h = normalize(wo + wi);
       const Float wo_h = dot(wo, h);
-      const Lobe inner = lobe(b.alpha, h, wi), outer = lobe(coat_alpha, h, wi);
+      const Lobe outer = lobe(coat_alpha, h, wi);
+      const Lobe inner =
+          b.stretched ? lobe(ggx_widths(b.alpha, b.stretch[0], b.stretch[1]), h, wi) : lobe(b.alpha, h, wi);
       Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
       if (b.scatters_again) diffuse = diffuse + scattered * (lost(wo) * lost(wi) * Float(1.f / pi));
       const Mask smooth = b.smooth();
@@ -133,7 +145,8 @@ struct Principled : ModelDefaults {
     struct Lobe {
       Float value, pdf;  ///< without Fresnel's term
     };
-    CASTRAY_INLINE Lobe lobe(Float alpha, Vec h, Vec wi) const {
+    template <class Alpha>
+    CASTRAY_INLINE Lobe lobe(const Alpha& alpha, Vec h, Vec wi) const {
       return {ggx_distribution(alpha, h) * ggx_shadowing_over_cos(alpha, wo, wi),
               ggx_reflection_pdf(alpha, wo, h, ggx_cap_scale(alpha, wo))};
     }

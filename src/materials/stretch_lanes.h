@@ -3,7 +3,7 @@
 #include "geometry/placement_lanes.h"
 #include "materials/normals_lanes.h"
 
-// How the lobes of anisotropic metals lie on a surface: along a direction in the plane of the triangle, at an
+// How lobes that are not round lie on a surface: along a direction in the plane of the triangle, at an
 // angle from the one in which u grows, and along what that is in the plane across the shading normal, seen
 // along it.
 
@@ -19,8 +19,9 @@ CASTRAY_INLINE Stretch stretch_along(const Frame& frame, const Vec& along, Float
   return {fma(x, x, -(y * y)) * scale, Float(2.f) * x * y * scale};
 }
 
-/// Lays the lobes of materials that have such ones: turns `value`'s slot_stretch to the frame of the shading
-/// normal, which is on the viewer's side as `facing` is. `front`: that is the geometric normal's side.
+/// Lays the lobes of materials that have such ones: sets `value`'s slot_stretch, or slot_layered_stretch, for
+/// the frame of the shading normal, which is on the viewer's side as `facing` is. `front`: that is the
+/// geometric normal's side.
 template <class Placement>
 __attribute__((noinline)) void lay_lobes(const MaterialTables& tables, const TriangleTable& table,
                                          const Placement& placement, const Uint& material,
@@ -39,27 +40,34 @@ __attribute__((noinline)) void lay_lobes(const MaterialTables& tables, const Tri
   const float* turn = fields_of(tables.materials, &KernelMaterial::turn);
   const Vec v = cross(outward, u) * handedness,
             along = fma(v, gather(turn + 1, material), u * gather(turn, material));
-  const Stretch laid = stretch_along(make_frame(shading_normal), along, value[slot_stretch]);
-  value[slot_stretch] = select(stretched, laid.x, value[slot_stretch]);
-  value[slot_stretch + 1] = select(stretched, laid.y, value[slot_stretch + 1]);
+  const Stretch laid = stretch_along(make_frame(shading_normal), along,
+                                     gather(tables.materials, &KernelMaterial::stretch, material));
+  const Mask metal =
+      gather(tables.materials, &KernelMaterial::type, material) == Uint((uint32_t)MaterialType::conductor);
+  const auto set = [&](const Mask& lanes, int slot) {
+    value[slot] = select(lanes, laid.x, value[slot]);
+    value[slot + 1] = select(lanes, laid.y, value[slot + 1]);
+  };
+  set(stretched & metal, slot_stretch);
+  set(stretched & ~metal, slot_layered_stretch);
 }
 
 /// Lays the lobes of `b`, which lie as the shading normal `from` has it, as `to` has it, in `lanes`.
 /// `normal`: the geometric one.
 inline __attribute__((noinline)) void relay_lobes(const Mask& lanes, const Vec& from, const Vec& to,
                                                   const Vec& normal, Bsdf& b) {
-  const Float strength = sqrt(fma(b.own[0], b.own[0], b.own[1] * b.own[1]));
-  const Mask stretched = lanes & b.is(MaterialType::conductor) & (strength > Float(0.f));
+  const Float strength = sqrt(fma(b.stretch[0], b.stretch[0], b.stretch[1] * b.stretch[1]));
+  const Mask stretched = lanes & (strength > Float(0.f));
   if (none(stretched)) return;
-  const Float cos2 = b.own[0] / strength, half(0.5f);
+  const Float cos2 = b.stretch[0] / strength, half(0.5f);
   const Float c = sqrt(max(fma(cos2, half, half), Float(0.f)));
-  const Float s = copy_sign(sqrt(max(fma(cos2, -half, half), Float(0.f))), b.own[1]);
+  const Float s = copy_sign(sqrt(max(fma(cos2, -half, half), Float(0.f))), b.stretch[1]);
   const Frame before = make_frame(from);
   const Vec across = fma(before.t, s, before.s * c);
   const Vec along = across - from * (dot(across, normal) / dot(from, normal));
   const Stretch laid = stretch_along(make_frame(to), along, strength);
-  b.own[0] = select(stretched, laid.x, b.own[0]);
-  b.own[1] = select(stretched, laid.y, b.own[1]);
+  b.stretch[0] = select(stretched, laid.x, b.stretch[0]);
+  b.stretch[1] = select(stretched, laid.y, b.stretch[1]);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -106,9 +106,11 @@ std::uint64_t scene_hash(const Scene& scene) {
     for (const Vec3f& row : instance.rows) hash.add(Vec3d(row));
     hash.add(Vec3d(instance.translation));
   }
+  const Material usual;
   for (const Material& m : scene.materials) {
     hash.add(m.type);
     for (const MaterialKey& key : descriptor_of(m.type).keys) {
+      if (key.optional_in_hash && value_of(key, m) == value_of(key, usual)) continue;
       hash.add(value_of(key, m));
       if (key.parameter) add_map(hash, m.map(*key.parameter));
     }

@@ -16,19 +16,14 @@ namespace castray {
 
 namespace {
 
-constexpr std::string_view supported_extensions[] = {"KHR_mesh_quantization",
-                                                     "KHR_lights_punctual",
-                                                     "KHR_texture_transform",
-                                                     "KHR_materials_emissive_strength",
-                                                     "KHR_materials_transmission",
-                                                     "KHR_materials_volume",
-                                                     "KHR_materials_ior",
-                                                     "KHR_materials_clearcoat",
-                                                     "KHR_materials_sheen",
-                                                     "KHR_materials_specular",
-                                                     "KHR_materials_pbrSpecularGlossiness",
-                                                     "KHR_materials_unlit",
-                                                     "EXT_mesh_gpu_instancing"};
+constexpr std::string_view supported_extensions[] = {
+    "KHR_mesh_quantization",      "KHR_lights_punctual",
+    "KHR_texture_transform",      "KHR_materials_emissive_strength",
+    "KHR_materials_transmission", "KHR_materials_volume",
+    "KHR_materials_ior",          "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",    "KHR_materials_sheen",
+    "KHR_materials_specular",     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",        "EXT_mesh_gpu_instancing"};
 
 /// What a picture of one moment does not show.
 constexpr std::string_view harmless_extensions[] = {"KHR_xmp_json_ld", "KHR_materials_variants",

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/range.h"
+#include "core/warp.h"
 #include "materials/media.h"
 #include "materials/texture.h"
 #include "scene/gltf_value.h"
@@ -178,7 +179,9 @@ class GltfMaterialReader {
     set_specular();
     set_sheen();
     set_clearcoat();
-    const bool is_layered = out_.sheen > 0 || out_.clearcoat > 0 || out_.transmission > 0;
+    set_anisotropy();
+    const bool is_layered =
+        out_.sheen > 0 || out_.clearcoat > 0 || out_.transmission > 0 || out_.anisotropy > 0;
     const bool is_coated = out_.ks != Vec3d();
     out_.type = out_.metallic > 0 || is_layered ? MaterialType::principled
                 : is_coated                     ? MaterialType::microfacet
@@ -277,6 +280,26 @@ class GltfMaterialReader {
     if (!(max_component(color) > 0)) return;
     warn("sheen is white, of the strength of its colour's luminance, whatever its roughness");
     out_.sheen = std::clamp(luminance(color), 0.0, 1.0);
+  }
+
+  /// The lobe's widths: alpha across its direction, and by the square of the strength nearer to 1 along it.
+  void set_anisotropy() {
+    const tinygltf::Value* stretch = find_extension(m_.extensions, "KHR_materials_anisotropy");
+    const double strength = unit(number_in(stretch, "anisotropyStrength", 0), "anisotropyStrength");
+    if (strength == 0) return;
+    if (out_.emits() || out_.has_alpha_map()) {
+      warn(fmt::format("anisotropy is left out beside {}",
+                       out_.emits() ? "emission" : "an image of the roughness"));
+      return;
+    }
+    if (texture_use(stretch, "anisotropyTexture").used())
+      warn("anisotropyTexture is left out: the strength and the rotation are the same everywhere");
+    constexpr double least_ratio = 0.01;
+    const double along = out_.alpha + (1 - out_.alpha) * strength * strength;
+    const double ratio = std::clamp(out_.alpha / along, least_ratio, 1.0);
+    out_.alpha = along * std::sqrt(ratio);
+    out_.anisotropy = 1 - ratio;
+    out_.anisotropy_rotation = number_in(stretch, "anisotropyRotation", 0) * (180 / pi<double>);
   }
 
   void set_clearcoat() {

@@ -58,6 +58,7 @@ class MaterialReader {
                        "lobes; leave one of them out");
     check_thin(reader);
     check_glass_share(reader);
+    check_stretched_layers(reader);
     return std::move(material_);
   }
 
@@ -82,6 +83,21 @@ class MaterialReader {
     if (material_.map(SurfaceParameter::metallic).used())
       throw InputError(reader.find("metallic")->key_place, "an image of \"metallic\"" + advice);
     if (material_.emits()) throw InputError(reader.find("ke")->key_place, "\"ke\"" + advice);
+  }
+
+  /// What a stretched lobe leaves for a base is tabulated for one width; and kernels have no room for both
+  /// its direction and what is emitted.
+  void check_stretched_layers(const ObjectReader& reader) const {
+    if (material_.type != MaterialType::principled || !(material_.anisotropy > 0)) return;
+    if (material_.emits())
+      throw InputError(reader.find("ke")->key_place,
+                       "\"ke\" cannot go with \"anisotropy\" of a principled material; give a part of the "
+                       "mesh a material of its own");
+    if (material_.has_alpha_map() && !material_.is_bare_metal())
+      throw InputError(
+          reader.find("anisotropy")->key_place,
+          "\"anisotropy\" of a principled material whose roughness is an image needs \"metallic\" "
+          "1, a number: there is no base below the lobe then");
   }
 
   void read_key(const MaterialKey& key, const JsonNode& node) {

@@ -202,9 +202,15 @@ class Meaning {
   void read_anisotropy() {
     const double amount = mtl_.anisotropy.value_or(0);
     if (amount == 0) return;
-    if (material_.type != MaterialType::conductor)
-      return builder_.warnings.add(mtl_.place, "aniso is done for metals alone: Pm 1 without a coat",
-                                   Harm::changes_picture);
+    const bool is_metal = material_.type == MaterialType::conductor;
+    const bool is_layered = material_.type == MaterialType::principled && !material_.emits() &&
+                            (!material_.has_alpha_map() || material_.is_bare_metal());
+    if (!is_metal && !is_layered)
+      return builder_.warnings.add(
+          mtl_.place,
+          "aniso is done for metals, and for what has Pm, Ps or Pc and neither Ke nor "
+          "an image of its roughness",
+          Harm::changes_picture);
     material_.anisotropy = 0.9 * amount;
     material_.anisotropy_rotation = 360 * mtl_.anisotropy_rotation.value_or(0);
   }

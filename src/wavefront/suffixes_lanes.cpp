@@ -13,7 +13,10 @@ CASTRAY_INLINE FoundLight light_at(const Context& c, bool emission_varies, const
   const Mask front = (material >> 31) == Uint(1u);
   FoundLight found = found_light(c.scene.materials, record_of(material), front);
   if (emission_varies) found.emission = load_vec(v.parameters, slot_emission, i);
-  found.emission = select(found.shines & Mask(c.options.mis), found.emission, black());
+  Mask shines = found.shines & Mask(c.options.mis);
+  // Where lobes are not round, how they lie may stand in the place of an emission that is 0.
+  if (c.scene.stretched) shines = shines & has_traits(c.scene, record_of(material), trait_emits);
+  found.emission = select(shines, found.emission, black());
   return found;
 }
 

@@ -273,6 +273,10 @@ const std::vector<Case> cases = {
         R"(  "materials": { "a": { "type": "conductor", "anisotropy": 0.5, "multiple_scattering": true } },)",
         "s.json:2:46: \"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "
         "lobes; leave one of them out"),
+    in_line("layers with a brushed lobe that emit",
+            R"(  "materials": { "a": { "type": "principled", "anisotropy": 0.5, "ke": 2 } },)",
+            "s.json:2:66: \"ke\" cannot go with \"anisotropy\" of a principled material; give a part of the "
+            "mesh a material of its own"),
     in_line("a grey above 1", R"(  "materials": { "a": { "type": "diffuse", "kd": 1.5 } },)",
             "s.json:2:50: \"kd\" must be at least 0 and at most 1, not 1.5"),
     in_line("an index without its imaginary part",

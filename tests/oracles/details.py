@@ -66,6 +66,11 @@ CASES = {
         None,
         lambda: twosided({"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha_u": 0.045, "alpha_v": 0.18,
                           "specular_reflectance": {"type": "rgb", "value": [0.9, 0.7, 0.5]}})),
+    "layers_brushed": (
+        {"type": "principled", "kd": [0.9, 0.7, 0.5], "metallic": 1, "roughness": 0.3, "anisotropy": 0.72},
+        None,
+        lambda: twosided({"type": "principled", "base_color": {"type": "rgb", "value": [0.9, 0.7, 0.5]}, "metallic": 1.0,
+                          "roughness": 0.3, "anisotropic": 0.8})),
     "pair": (
         {"type": "two_sided", "front": {"type": "diffuse", "kd": {"image": "colours.png"}},
          "back": {"type": "conductor", "reflectance": {"eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0.8]}, "roughness": 0.5}},

@@ -72,6 +72,19 @@ Material brushed(double alpha, double anisotropy, double degrees) {
   return m;
 }
 
+/// A blend with metal under a coat, all of it.
+Material layered(double alpha, double anisotropy, double degrees) {
+  Material m = brushed(alpha, anisotropy, degrees);
+  m.type = MaterialType::principled;
+  m.kd = m.reflectance;
+  m.ks = Vec3d(0.06);
+  m.metallic = 0.7;
+  m.sheen = 0.3;
+  m.clearcoat = 0.8;
+  m.clearcoat_roughness = 0.2;
+  return m;
+}
+
 }  // namespace
 
 TEST_CASE("brushed metal is as castRay has it", "[statistical]") {
@@ -81,6 +94,16 @@ TEST_CASE("brushed metal is as castRay has it", "[statistical]") {
     expected.check_with(isa, scene, [&](RenderOptions& o) { o.isa = isa; });
   expected.check("plain", scene, plain(wavefront_options(8)));
   expected.check("instances, some mirrored", as_instances(scene, kinds_of_places()), wavefront_options(4));
+}
+
+TEST_CASE("layers with a brushed lobe are as castRay has them", "[statistical]") {
+  const Scene scene = gutter(layered(0.2, 0.8, 30), 0);
+  constexpr std::uint64_t seeds = 12;
+  const Expected expected(scene, wavefront_options(8), seeds);
+  expected.check("shared", scene, wavefront_options(8), seeds);
+  RenderOptions others = plain(wavefront_options(8));
+  others.isa = instruction_sets().front();
+  expected.check("plain, " + others.isa, scene, others, seeds);
 }
 
 TEST_CASE("caustics of brushed metal by paths from lights are as castRay has them", "[statistical]") {

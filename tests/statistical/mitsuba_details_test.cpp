@@ -38,7 +38,7 @@ void check(const std::string& file, const Expected& expected, Way way) {
 
 const std::string golden = std::string(CASTRAY_ROOT) + "/tests/golden/";
 const std::vector<std::string> details{"colours", "holes", "normals", "heights", "metal", "mirror"},
-    without_images{"index", "glass", "pane", "pair", "brushed"},
+    without_images{"index", "glass", "pane", "pair", "brushed", "layers_brushed"},
     lights{"environment", "point", "spot", "directional", "emission", "instances"};
 
 /// By every way of rendering: 18 tests a scene.

@@ -198,6 +198,20 @@ TEST_CASE("glass, clear coat, sheen, specular-glossiness and unlit") {
   CHECK(unlit.two_sided_emission);
 }
 
+TEST_CASE("KHR_materials_anisotropy: alpha across the lobe's direction, and along it nearer to 1") {
+  GltfFile file;
+  const Material m =
+      material_of(file, {{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}},
+                         {"extensions",
+                          {{"KHR_materials_anisotropy",
+                            {{"anisotropyStrength", 0.5}, {"anisotropyRotation", std::numbers::pi / 2}}}}}});
+  const double across = 0.25, along = across + (1 - across) * 0.25, ratio = 1 - m.anisotropy;
+  CHECK(m.type == MaterialType::principled);
+  CHECK(m.alpha / std::sqrt(ratio) == Approx(along));
+  CHECK(m.alpha * std::sqrt(ratio) == Approx(across));
+  CHECK(m.anisotropy_rotation == Approx(90));
+}
+
 TEST_CASE("KHR_texture_transform: scale and offset are the map's, a turn is the mesh's") {
   const auto with = [](GltfFile& file, const Json& transform) -> Json {
     return {{"pbrMetallicRoughness",

@@ -57,6 +57,8 @@ std::vector<Material> all_materials() {
     list.push_back(material(MaterialType::conductor, alpha));
     list.back().anisotropy = 0.8;
     list.push_back(material(MaterialType::principled, alpha));
+    list.back().anisotropy = 0.8;
+    list.push_back(material(MaterialType::principled, alpha));
     list.back().multiple_scattering = true;
   }
   return list;

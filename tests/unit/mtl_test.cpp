@@ -243,12 +243,18 @@ TEST_CASE("aniso of a metal is the ratio of its lobe's widths, anisor a share of
   CHECK(read.material().type == MaterialType::conductor);
   CHECK(read.material().anisotropy == 0.45);
   CHECK(read.material().anisotropy_rotation == 90);
-  CHECK(Read("Pm .5\naniso .5\n").warning() == "aniso is done for metals alone: Pm 1 without a coat");
   CHECK(Read("Pm 1\nanisor .5\n").material().anisotropy == 0);
+  Read layered("Pm .5\nPr .5\nPc 1\naniso .5\n");
+  CHECK(layered.warning().empty());
+  CHECK(layered.material().type == MaterialType::principled);
+  CHECK(layered.material().anisotropy == 0.45);
 }
 
 TEST_CASE("what is not done and would be seen is told") {
-  CHECK(Read("aniso .5\n").warning() == "aniso is done for metals alone: Pm 1 without a coat");
+  const std::string needs_layers =
+      "aniso is done for metals, and for what has Pm, Ps or Pc and neither Ke nor an image of its roughness";
+  CHECK(Read("aniso .5\n").warning() == needs_layers);
+  CHECK(Read("Pm .5\nKe 1 1 1\naniso .5\n").warning() == needs_layers);
   CHECK(Read("map_aniso grey.pfm\n").warning() == "map_aniso is not done");
   CHECK(Read("Pc 0\nPs 0\naniso 0\nPcr .03\nKa 1 1 1\nsharpness 60\n").warning().empty());
   CHECK(Read("disp grey.pfm\n").warning() == "disp is not done");
