@@ -73,18 +73,19 @@ class Weights {
 #pragma omp for schedule(static)
       for (int y0 = 0; y0 < h_; y0 += block) {
         find_blocks(y0);
+        spread_blocks(y0, around);
         for (int y = y0; y < std::min(y0 + block, h_); ++y) {
-          write_screen(y, weights.screen.row(y));
+          write_screen(sums_.counts(half_, y, Term::own), w_, around.screen.data(), weights.screen.row(y));
           around.add_up(right_, sums_, half_, y, Term::right);
-          write_pairs(y, w_ - 1, around, right_.row(y), sums_.counts(half_, y, Term::right),
+          write_pairs(w_ - 1, around, right_.row(y), sums_.counts(half_, y, Term::right),
                       weights.screen.row(y), weights.right.row(y));
           if (y + 1 == h_) {
             std::fill_n(weights.below.row(y), w_, 0.f);
             continue;
           }
           around.add_up(below_, sums_, half_, y, Term::below);
-          write_pairs(y, w_, around, below_.row(y), sums_.counts(half_, y, Term::below),
-                      weights.screen.row(y), weights.below.row(y));
+          write_pairs(w_, around, below_.row(y), sums_.counts(half_, y, Term::below), weights.screen.row(y),
+                      weights.below.row(y));
         }
       }
     }
@@ -94,8 +95,11 @@ class Weights {
   /// Of each pixel of a row: the number, sum and sum of squares of the differences of 3x3 pixels.
   struct Neighbourhood {
     std::vector<float> columns[3], sums[3];
+    std::vector<float> screen,
+        least;  ///< of its block: the weight of a mean, the least variance of differences
 
-    explicit Neighbourhood(int width) {
+    explicit Neighbourhood(int width)
+        : screen(static_cast<std::size_t>(width)), least(static_cast<std::size_t>(width)) {
       for (int k = 0; k < 3; ++k) {
         columns[k].resize(static_cast<std::size_t>(width) + 2);
         sums[k].resize(static_cast<std::size_t>(width));
@@ -154,30 +158,44 @@ class Weights {
     }
   }
 
-  void write_screen(int y, float* screen) const {
-    const std::uint32_t* count = sums_.counts(half_, y, Term::own);
-    for (int x = 0; x < w_; ++x) screen[x] = count[x] > 0 ? weight_of_mean / block_at(x, y).mean_variance : 0;
+  /// What the pixels of rows y0 <= y < y0 + block have from their blocks.
+  void spread_blocks(int y0, Neighbourhood& around) const {
+    for (int x0 = 0; x0 < w_; x0 += block) {
+      const Block& of_pixels = block_at(x0, y0);
+      for (int x = x0; x < std::min(x0 + block, w_); ++x) {
+        around.screen[static_cast<std::size_t>(x)] = weight_of_mean / of_pixels.mean_variance;
+        around.least[static_cast<std::size_t>(x)] = square(least_of_difference) * of_pixels.luminance2;
+      }
+    }
+  }
+
+  CASTRAY_VECTOR_CLONES
+  static void write_screen(const std::uint32_t* count, int width, const float* known,
+                           float* __restrict screen) {
+    for (int x = 0; x < width; ++x) screen[x] = count[x] > 0 ? known[x] : 0;
   }
 
   /// The variance of the differences of a row's first `pairs` pixels, to neighbours in the film: that among
   /// 3x3 of them, or how far this one is from their mean.
   CASTRAY_VECTOR_CLONES
-  void write_pairs(int y, int pairs, const Neighbourhood& around, const float* difference,
-                   const std::uint32_t* count, const float* screen, float* weight) const {
+  static void write_pairs(int pairs, const Neighbourhood& around, const float* difference,
+                          const std::uint32_t* count, const float* screen, float* __restrict weight) {
+    const float *numbers = around.sums[0].data(), *sums = around.sums[1].data(),
+                *squares = around.sums[2].data(), *least = around.least.data();
     for (int x = 0; x < pairs; ++x) {
-      const auto at = static_cast<std::size_t>(x);
-      const float n = around.sums[0][at];
-      weight[x] = 0;
-      if (count[x] == 0 || n < 2) continue;
-      const float mean = around.sums[1][at] / n, mean_square = around.sums[2][at] / n;
-      const float among = std::max(mean_square - mean * mean, 0.f) * n / (n - 1),
+      const float n = numbers[x], mean = sums[x] / n, mean_square = squares[x] / n;
+      const float among = at_least(mean_square - mean * mean, 0) * n / (n - 1),
                   own = square(difference[x] - mean);
-      const float doubtful = doubt * std::max(mean_square, square(difference[x])) +
-                             square(least_of_difference) * block_at(x, y).luminance2 + square(least_of_scale);
-      const float variance = std::max(among, own) + doubtful / static_cast<float>(count[x]);
-      weight[x] = std::min(1 / variance, stiffest * screen[x]);
+      const float doubtful =
+          doubt * at_least(mean_square, square(difference[x])) + least[x] + square(least_of_scale);
+      const float variance = at_least(among, own) + doubtful / static_cast<float>(count[x]);
+      const float trusted = 1 / variance, most = stiffest * screen[x];
+      const float found = most < trusted ? most : trusted;
+      weight[x] = (count[x] > 0) & (n >= 2) ? found : 0;
     }
   }
+
+  static float at_least(float x, float least) { return x < least ? least : x; }
 
   const DifferenceSums& sums_;
   int half_, threads_, w_, h_;

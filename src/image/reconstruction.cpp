@@ -99,6 +99,16 @@ void keep_known(PixelCouplings& weights, const DifferenceSums& sums, int half, i
   }
 }
 
+/// The same as `Film::image`, by several threads.
+Image means_of(const Film& film, int threads) {
+  Image image(film.width(), film.height());
+  const Window& window = film.window();
+#pragma omp parallel for schedule(static) num_threads(threads)
+  for (int y = 0; y < film.height(); ++y)
+    for (int x = 0; x < film.width(); ++x) image.at(x, y) = Vec3f(film.mean(window.x0 + x, window.y0 + y));
+  return image;
+}
+
 /// Whether a half has two samples of any pixel. Of one sample, differences are those of the means.
 bool may_need_corrections(const DifferenceSums& sums) {
   const auto& counts = sums.all_counts();
@@ -120,19 +130,19 @@ PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weight
 }
 
 Image image_of(const Film& film, int threads) {
-  Image image = film.image();
+  if (threads <= 0) threads = available_threads();
+  Image image = means_of(film, threads);
   const DifferenceSums& sums = film.differences();
   if (!sums.kept() || !may_need_corrections(sums)) return image;
-  if (threads <= 0) threads = available_threads();
   const Window& window = film.window();
   ScreenedPoisson solver(film.width(), film.height(), threads);
   PixelPlanes first = corrections(sums, 0, 1, threads, solver);
   const PixelPlanes both[] = {std::move(first), corrections(sums, 1, 0, threads, solver)};
   const auto share = static_cast<float>(share_of_corrections(sums, both, threads) * sums.scale());
-  for (int half = 0; half < DifferenceSums::halves; ++half) {
-    const PixelPlanes& correction = both[half];
 #pragma omp parallel for schedule(static) num_threads(threads)
-    for (int y = 0; y < film.height(); ++y) {
+  for (int y = 0; y < film.height(); ++y)
+    for (int half = 0; half < DifferenceSums::halves; ++half) {
+      const PixelPlanes& correction = both[half];
       const std::uint32_t* count = sums.counts(half, y, Term::own);
       for (int x = 0; x < film.width(); ++x) {
         const auto all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
@@ -140,7 +150,6 @@ Image image_of(const Film& film, int threads) {
         if (all > 0) image.at(x, y) += more * (share * static_cast<float>(count[x]) / all);
       }
     }
-  }
   return image;
 }
 
