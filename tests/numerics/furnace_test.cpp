@@ -4,6 +4,7 @@
 #include "instanced.h"
 #include "integrators.h"
 #include "reference_images.h"
+#include "same_bytes.h"
 #include "test_scenes.h"
 
 using namespace castray;
@@ -89,7 +90,8 @@ TEST_CASE("the furnace closes around white instances") {
   sketch.scene.camera = make_camera({0.1, 0.2, 0.9}, {0, 0, -0.3}, {0, 1, 0}, 60);
   const Scene scene = as_instances(sketch.scene, kinds_of_places());
   RenderOptions options = wavefront_options(16, 4, 1);
-  for (const Way& way : every_way(options)) {
+  check_same_bytes(scene, options);
+  for (const Way& way : every_way(options, arithmetics())) {
     if (way.options.accel == AccelKind::list) continue;
     check_furnace(way.name, scene, way.options);
   }

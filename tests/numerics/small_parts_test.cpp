@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "integrators.h"
+#include "same_bytes.h"
 #include "statistics.h"
 #include "test_scenes.h"
 
@@ -85,13 +86,14 @@ bool is_list(const Way& way) {
 /// cube's corners are rounded by up to a fortieth of its size, except by the list's test in double.
 double rounding(const Way& way, double size) { return size < 3e-6 && !is_list(way) ? 0.01 : 0; }
 
-// 17 ways and 6 sizes a scene: |t| > 7.5 with 15 degrees of freedom or more has a probability of 2e-6 each,
-// 4e-4 for both scenes. Means are known to 0.1 to 0.9 %. Besides, list and tree render the same samples.
+// 9 ways and 6 sizes a scene: |t| > 7.5 with 15 degrees of freedom or more has a probability of 2e-6 each,
+// 2e-4 for both scenes. Means are known to 0.1 to 0.9 %. Besides, list and tree render the same samples.
 void check_all_sizes(Scene (*make)(double)) {
   constexpr std::uint64_t seeds = 16;
   for (const double size : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     const Scene scene = make(size);
-    const std::vector<Way> ways = every_way(wavefront_options(side, 16, 1));
+    const std::vector<Way> ways = every_way(wavefront_options(side, 16, 1), arithmetics());
+    check_same_bytes(scene, wavefront_options(side, 2, 1));
     const Mean truth = mean_over_seeds(scene, std::ranges::find_if(ways, is_double)->options, seeds);
     double list[2] = {};  // with plain and with shared paths
     for (const Way& way : ways) {

@@ -31,16 +31,28 @@ inline std::vector<std::string> instruction_sets() {
 /// not.
 inline bool has_fma(const std::string& set) { return set == "avx2" || set == "avx512"; }
 
-/// The reference in both precisions, and the wavefront with each instruction set, over list and tree, with
-/// shared and plain paths, all with the size and samples of `options`.
-inline std::vector<Way> every_way(const RenderOptions& options) {
+/// Of each arithmetic, with fused multiply-add and without, the widest instruction set: enough for tests of
+/// means where check_same_bytes says that the others give its bytes.
+inline std::vector<std::string> arithmetics() {
+  std::vector<std::string> widest;
+  for (const std::string& set : instruction_sets()) {
+    if (widest.empty() || has_fma(set) != has_fma(widest.back())) widest.emplace_back();
+    widest.back() = set;
+  }
+  return widest;
+}
+
+/// The reference in both precisions, and the wavefront with each of the instruction sets, over list and tree,
+/// with shared and plain paths, all with the size and samples of `options`.
+inline std::vector<Way> every_way(const RenderOptions& options,
+                                  const std::vector<std::string>& sets = instruction_sets()) {
   std::vector<Way> ways;
   for (const Precision precision : {Precision::float32, Precision::float64}) {
     ways.push_back({precision == Precision::float32 ? "reference, float" : "reference, double", options});
     ways.back().options.integrator = Integrator::reference;
     ways.back().options.precision = precision;
   }
-  for (const std::string& set : instruction_sets())
+  for (const std::string& set : sets)
     for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
       for (const bool shared : {true, false}) {
         ways.push_back(

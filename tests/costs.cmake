@@ -1,0 +1,17 @@
+# The tests that take longest, in seconds of processor time: ctest starts them first, so that no core waits at the end.
+# A clean checkout has no measurements of its own; a name that is gone is passed over.
+set_tests_properties("statistical/kernels agree with castRay where everything differs from point to point" PROPERTIES COST 60)
+set_tests_properties("statistical/light points on an image that emits are unbiased" PROPERTIES COST 50)
+set_tests_properties("statistical/the wavefront agrees with castRay on numbers by image" PROPERTIES COST 45)
+set_tests_properties("golden/every kernel renders every scene as the stored films show it" PROPERTIES COST 25)
+set_tests_properties("statistical/every way of choosing light points has the same mean" PROPERTIES COST 25)
+set_tests_properties("docs/every command of the pages runs as written, after those before it" PROPERTIES COST 25)
+set_tests_properties("unit/a scene is read alike however it is written" PROPERTIES COST 20)
+set_tests_properties("numerics/lamps of any size light as by the reference in double" PROPERTIES COST 20)
+set_tests_properties("numerics/things of any size, seen close, are lit as by the reference in double" PROPERTIES COST 20)
+set_tests_properties("statistical/masked leaves look like leaves cut from triangles" PROPERTIES COST 15)
+set_tests_properties("statistical/mirrors and glass agree with castRay, whether their caustics come from lights or by chance" PROPERTIES COST 15)
+set_tests_properties("statistical/the wavefront agrees with castRay where boxes are only partly there" PROPERTIES COST 15)
+set_tests_properties("numerics/no sample is brighter than the light it sees by two thirds of a light" PROPERTIES COST 15)
+set_tests_properties("cli/progress is a bar, lines, or nothing" PROPERTIES COST 12)
+set_tests_properties("cli/serve: a paused render gets no samples until it goes on" PROPERTIES COST 10)
