@@ -64,12 +64,12 @@ struct Material {
   Vec3d kd{0.5, 0.5, 0.5};           ///< diffuse: albedo; microfacet, principled: albedo of the diffuse base
   Vec3d ks{0, 0, 0};                 ///< microfacet, principled: Schlick's F0
   Vec3d reflectance{0.8, 0.8, 0.8};  ///< conductor: Fresnel reflectance; with an index, that straight on
-  Vec3d eta{0, 0, 0};                ///< conductor: its complex index of refraction is eta + i k, of red,
-  Vec3d k{0, 0, 0};                  ///< green and blue light; eta 0: the reflectance is constant
-  Vec3d transmittance{1, 1, 1};      ///< dielectric: tint of what passes through the surface
-  Vec3d ke{0, 0, 0};                 ///< emitted radiance
-  Vec3d absorption{0, 0, 0};  ///< dielectric, principled: inside it, over a unit of length of the files
-  double alpha = 0;           ///< GGX width; 0 is perfectly smooth
+  Vec3d eta{0, 0, 0};            ///< conductor, metal of principled: complex index of refraction eta + i k,
+  Vec3d k{0, 0, 0};              ///< of red, green and blue light; eta 0: there is none
+  Vec3d transmittance{1, 1, 1};  ///< dielectric: tint of what passes through the surface
+  Vec3d ke{0, 0, 0};             ///< emitted radiance
+  Vec3d absorption{0, 0, 0};     ///< dielectric, principled: inside it, over a unit of length of the files
+  double alpha = 0;              ///< GGX width; 0 is perfectly smooth
   /// Conductor, principled, in [0,0.99]: where it is a, the width is alpha / sqrt(1 - a) in the direction in
   /// which u grows, turned by so many degrees towards that of v, and alpha sqrt(1 - a) across it.
   double anisotropy = 0, anisotropy_rotation = 0;
@@ -78,6 +78,7 @@ struct Material {
   double sheen = 0;                ///< principled, [0,1]
   double clearcoat = 0;            ///< principled, [0,1]: the share that the coat covers
   double clearcoat_roughness = 0;  ///< principled, [0,1]
+  double clearcoat_ior = 1.5;      ///< principled: index of the coat, by which it reflects straight on
   double coverage = 1;             ///< [0,1]: the share of the surface that is there
   bool correlated_masking = true;  ///< false, reference integrator only: to compare with renderers without
   double ior = 1.5;   ///< dielectric, glass of principled: index inside (where the normal points away from)

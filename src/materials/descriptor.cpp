@@ -187,6 +187,11 @@ const std::vector<std::string_view>& filter_names() {
   return names;
 }
 
+bool takes_index(const MaterialKey& key, MaterialType type) {
+  return type == MaterialType::principled ? key.parameter == SurfaceParameter::kd
+                                          : key.parameter == SurfaceParameter::reflectance;
+}
+
 int floats_of(const MaterialKey& key) { return key.kind == MaterialKey::Kind::color ? 3 : 1; }
 
 Vec3d value_of(const MaterialKey& key, const Material& material) {

@@ -106,6 +106,9 @@ const std::vector<std::string_view>& channel_names();
 /// By TextureFilter.
 const std::vector<std::string_view>& filter_names();
 
+/// Whether a metal's index may stand for this colour of a material (Material::eta, k).
+bool takes_index(const MaterialKey& key, MaterialType type);
+
 /// Of its value.
 int floats_of(const MaterialKey& key);
 

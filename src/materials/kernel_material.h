@@ -71,18 +71,19 @@ inline constexpr float least_clearcoat_alpha = 1e-3f;
 struct KernelMaterial {
   float value[vertex_floats];  ///< by ParameterSlot, where no image changes them
   float coverage;
-  float ior;                  ///< of a thin wall, times -1
-  float eta[3], k[3];         ///< conductor: complex index of refraction; eta 0: constant reflectance
-  float stretch;              ///< how far its lobe is from round, the length of slot_stretch
-  float turn[2];              ///< cosine and sine of the angle from where u grows to where lobes are wide
-  float absorption[3];        ///< dielectric: inside it, over a unit of length in scene space
-  uint32_t medium;            ///< dielectric: 1 + the material's index; else 0
-  uint32_t type;              ///< MaterialType
-  uint32_t traits;            ///< MaterialTrait set
-  uint32_t albedo;            ///< of a lobe with a table: offset in floats into MaterialTables::albedos
-  float albedo_rows;          ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
+  float ior;            ///< of a thin wall, times -1
+  float eta[3], k[3];   ///< conductor, principled: complex index of refraction; eta 0: constant reflectance
+  float stretch;        ///< how far its lobe is from round, the length of slot_stretch
+  float turn[2];        ///< cosine and sine of the angle from where u grows to where lobes are wide
+  float absorption[3];  ///< dielectric: inside it, over a unit of length in scene space
+  uint32_t medium;      ///< dielectric: 1 + the material's index; else 0
+  uint32_t type;        ///< MaterialType
+  uint32_t traits;      ///< MaterialTrait set
+  uint32_t albedo;      ///< of a lobe with a table: offset in floats into MaterialTables::albedos
+  float albedo_rows;    ///< albedo_row_steps where an image gives alpha: rows from `albedo` on; else 0
   uint32_t clearcoat_albedo;  ///< principled: likewise
   float clearcoat_rows;
+  float clearcoat_f0;   ///< straight on
   uint32_t back;        ///< what it is where the normal points away from: offset in floats of that record
   uint32_t glass;       ///< what it is at some points: offset of that record
   float glass_share;    ///< of points; 0: none

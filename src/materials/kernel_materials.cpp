@@ -82,6 +82,7 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     k.albedo = albedo_offset(widths, lobe);
     descriptor.finish(m, lobe, values.data());
   }
+  k.clearcoat_f0 = static_cast<float>(reflectance_of_coat(m.clearcoat_ior));
   if (has_clearcoat_rows(m)) {
     k.clearcoat_albedo = albedo_rows();
     k.clearcoat_rows = LobeAlbedoRows::steps;

@@ -60,14 +60,19 @@ const MaterialDescriptor& principled_descriptor() {
             .range = unit_range,
             .parameter = SurfaceParameter::clearcoat,
             .slot = slot_clearcoat,
-            .text = "The share of the surface that a coat of reflectance 0.04 covers [0]."},
+            .text = "The share of the surface that a coat covers [0]."},
            {.name = "clearcoat_roughness",
             .kind = Kind::number,
             .field = &Material::clearcoat_roughness,
             .range = unit_range,
             .parameter = SurfaceParameter::clearcoat_roughness,
             .slot = slot_clearcoat_roughness,
-            .text = "Of the coat; its alpha is the square, at least 0.001 [0]."}}),
+            .text = "Of the coat; its alpha is the square, at least 0.001 [0]."},
+           optional_in_hash({.name = "clearcoat_ior",
+                             .kind = Kind::number,
+                             .field = &Material::clearcoat_ior,
+                             .range = {.least = 1, .greatest = 3},
+                             .text = "Index of refraction of the coat [1.5]."})}),
       .traits = [](const Material& m) -> std::uint32_t {
         const bool bare_metal = m.is_bare_metal() && m.clearcoat == 0;
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "materials/bsdf_sample.h"
+#include "materials/conductor.h"
 #include "materials/descriptor.h"
 #include "materials/ggx.h"
 #include "materials/lobe_albedo.h"
@@ -16,6 +17,13 @@ const MaterialDescriptor& principled_descriptor();
 /// GGX's width of a clear coat of this roughness.
 inline double clearcoat_alpha(double roughness) {
   return std::max(roughness * roughness, double{least_clearcoat_alpha});
+}
+
+/// Straight on, of a coat of this index.
+inline double reflectance_of_coat(double ior) {
+  if (ior == 1.5) return 0.04;  // free of rounding
+  const double r = (ior - 1) / (ior + 1);
+  return r * r;
 }
 
 /// Whether the albedo of a material's clear coat is looked up by the roughness of an image (LobeAlbedoRows);
@@ -31,17 +39,19 @@ inline int clearcoat_row(double roughness) { return LobeAlbedoRows::row_of(clear
 ///     f_b = F D G2 / (4 cos_i cos_o) + (1 - metallic) kd / pi (1 - E(cos_i)) (1 - E(cos_o)) / (1 - E_mean)
 ///
 /// and, where that is asked for, metallic times scattered_again of facets with F0 = kd.
-/// F is Schlick's term with F0 = ks (1 - metallic) + kd metallic; E the albedo of a lobe with F0 = ks, as in
-/// Microfacet. f_c is a GGX lobe with F0 = 0.04. C and S are what clear coat and sheen leave of light to or
-/// from a direction, 1 - their albedo: so f is reciprocal and never reflects more than it receives.
+/// F is Schlick's term with F0 = ks (1 - metallic) + kd metallic; where the metal has an index, metallic
+/// times Fresnel's term of it stands for the metal's part. E is the albedo of a lobe with F0 = ks, as in
+/// Microfacet. f_c is a GGX lobe with F0 by the coat's index. C and S are what clear coat and sheen leave of
+/// light to or from a direction, 1 - their albedo: so f is reciprocal and never reflects more than it
+/// receives.
 template <class T>
 struct Principled {
-  static constexpr T clearcoat_f0 = T(0.04);
-
   Vec3<T> base;  ///< kd (1 - metallic) / (1 - E_mean)
   Vec3<T> ks, f0;
   Vec3<T> scattered;  ///< metallic times scattered_again, or 0
-  T sheen, clearcoat;
+  T sheen, clearcoat, clearcoat_f0;
+  T metal = 0;         ///< metallic, where Fresnel's term follows from the index
+  Vec3<T> eta{}, k{};  ///< that index
   Ggx<T> ggx, coat;
   const LobeAlbedo *albedo, *coat_albedo;  ///< of ggx.alpha and coat.alpha; not owned
 
@@ -57,6 +67,10 @@ struct Principled {
                                            : Vec3<T>(),
         .sheen = static_cast<T>(values.at(slot_sheen) * (1 - metallic)),
         .clearcoat = static_cast<T>(values.at(slot_clearcoat)),
+        .clearcoat_f0 = static_cast<T>(reflectance_of_coat(m.clearcoat_ior)),
+        .metal = m.has_index() ? static_cast<T>(metallic) : T(0),
+        .eta = Vec3<T>(m.eta),
+        .k = Vec3<T>(m.k),
         .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking, static_cast<T>(lobe_aspect(m))},
         .coat = {static_cast<T>(clearcoat_alpha(values.at(slot_clearcoat_roughness))), m.correlated_masking},
         .albedo = lobes.own,
@@ -70,7 +84,7 @@ struct Principled {
     const T s = schlick_weight(dot(wo, h));
     Vec3<T> f = base * albedo->left(wo.z, ks) * albedo->left(wi.z, ks) * (T(1) / pi<T>);
     if (scatters_again()) f += scattered * (lost(wo) * lost(wi) / pi<T>);
-    if (!ggx.smooth()) f = f + schlick(f0, s) * (ggx.distribution(h) * ggx.shadowing_over_cos(wo, wi));
+    if (!ggx.smooth()) f = f + fresnel(dot(wo, h)) * (ggx.distribution(h) * ggx.shadowing_over_cos(wo, wi));
     f = f * (left_by_sheen(wo) * left_by_sheen(wi)) + Vec3<T>(sheen * s);
     const T lobe = coat.distribution(h) * coat.shadowing_over_cos(wo, wi);
     const T reflected = clearcoat * schlick(Vec3<T>(clearcoat_f0), s).x * lobe;
@@ -95,7 +109,7 @@ struct Principled {
     const bool of_coat = u_lobe < share.coat, of_lobe = !of_coat && u_lobe < share.coat + share.lobe;
     if (of_lobe && ggx.smooth()) {
       const T passed = left_by_coat(wo) * left_by_sheen(wo);
-      return {.weight = schlick(f0, schlick_weight(wo.z)) * (passed * passed / share.lobe),
+      return {.weight = fresnel(wo.z) * (passed * passed / share.lobe),
               .wi = {-wo_.x, -wo_.y, wo.z},
               .pdf = share.lobe,
               .specular = true};
@@ -110,6 +124,14 @@ struct Principled {
   }
 
  private:
+  Vec3<T> fresnel(T cosine) const {
+    const T s = schlick_weight(cosine);
+    if (!(metal > 0)) return schlick(f0, s);
+    const Vec3<T> of_metal{fresnel_conductor(cosine, eta.x, k.x), fresnel_conductor(cosine, eta.y, k.y),
+                           fresnel_conductor(cosine, eta.z, k.z)};
+    return schlick(ks, s) * (T(1) - metal) + of_metal * metal;
+  }
+
   bool scatters_again() const { return max_component(scattered) > 0; }
   /// 1 - E of facets that reflect all.
   T lost(const Vec3<T>& w) const { return albedo->left(w.z, Vec3<T>(1)).x; }

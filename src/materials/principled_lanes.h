@@ -1,6 +1,6 @@
 #pragma once
 
-#include "materials/lobe_albedo_lanes.h"
+#include "materials/conductor_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -36,7 +36,7 @@ struct Principled : ModelDefaults {
     const BsdfSample rough = weigh(choose(wi.z > Float(0.f), layers.evaluate(wi), no_value()), wi);
     const Float passed = layers.left_by_coat(wo) * layers.left_by_sheen(wo);
     const BsdfSample mirror{{-wo.x, -wo.y, wo.z},
-                            schlick(layers.f0, wo.z) * (passed * passed / layers.lobe_share),
+                            layers.fresnel(wo.z) * (passed * passed / layers.lobe_share),
                             layers.lobe_share,
                             Mask(true),
                             Float(1.f)};
@@ -54,6 +54,16 @@ struct Principled : ModelDefaults {
   }
 
  private:
+  /// Fresnel's term where the metal has an index: `metallic` times its own, and the rest of the base's.
+  static __attribute__((noinline)) Vec with_index(const KernelMaterial* indices, Uint record, Float metallic,
+                                                  Float cosine, Vec of_base, Vec by_schlick) {
+    const Vec eta = gather_vec(indices, &KernelMaterial::eta, record),
+              k = gather_vec(indices, &KernelMaterial::k, record);
+    const Vec metal{fresnel_conductor(cosine, eta.x, k.x), fresnel_conductor(cosine, eta.y, k.y),
+                    fresnel_conductor(cosine, eta.z, k.z)};
+    return select(eta.x > Float(0.f), fma(metal, metallic, of_base * (Float(1.f) - metallic)), by_schlick);
+  }
+
   /// A facet of the coat, which is round, or of the inner lobe.
   CASTRAY_INLINE static Vec sample_stretched(const Bsdf& b, Float alpha, Mask of_coat, Vec wo, Float u,
                                              Float v) {
@@ -68,7 +78,7 @@ struct Principled : ModelDefaults {
     const Bsdf& b;
     Vec wo, f0, base, left_o;
     Vec scattered;  ///< see principled.h; only set where some material has it
-    Float sheen, coat, coat_alpha, coat_share, lobe_share;
+    Float sheen, coat, coat_f0, coat_alpha, coat_share, lobe_share;
     Uint coat_albedo;
 
     CASTRAY_INLINE Layers(const Bsdf& bsdf, Vec from) : b(bsdf), wo(from) {
@@ -79,6 +89,7 @@ struct Principled : ModelDefaults {
       base = base_under(b.albedos, b.albedo, b.kd, b.ks) * rest;
       sheen = cloth * rest;
       coat = covered;
+      coat_f0 = gather(b.materials, &KernelMaterial::clearcoat_f0, b.record);
       coat_alpha = max(square(roughness), Float(least_clearcoat_alpha));
       const Float rows = gather(b.materials, &KernelMaterial::clearcoat_rows, b.record);
       coat_albedo = gather(b.materials, &KernelMaterial::clearcoat_albedo, b.record) +
@@ -120,15 +131,22 @@ struct Principled : ModelDefaults {
       Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
       if (b.scatters_again) diffuse = diffuse + scattered * (lost(wo) * lost(wi) * Float(1.f / pi));
       const Mask smooth = b.smooth();
-      const Vec under = diffuse + select(smooth, black(), schlick(f0, wo_h) * inner.value);
+      const Vec under = diffuse + select(smooth, black(), fresnel(wo_h) * inner.value);
       const Float cloth = sheen * schlick(black(), wo_h).x;
       const Vec through = fma(under, left_by_sheen(wo) * left_by_sheen(wi), Vec{cloth, cloth, cloth});
-      const Float reflected = coat * schlick(coat_f0(), wo_h).x * outer.value;
+      const Float reflected = coat * schlick(coat_color(), wo_h).x * outer.value;
       const Vec f = fma(through, left_by_coat(wo) * left_by_coat(wi), Vec{reflected, reflected, reflected});
       const Float base_share = Float(1.f) - coat_share - lobe_share;
       const Float pdf = coat_share * outer.pdf + base_share * wi.z * Float(1.f / pi) +
                         select(smooth, Float(0.f), lobe_share * inner.pdf);
       return {f * wi.z, pdf};
+    }
+
+    CASTRAY_INLINE Vec fresnel(Float cosine) const {
+      const Vec by_schlick = schlick(f0, cosine);
+      if (!b.indices) return by_schlick;
+      return with_index(b.indices, b.record, unpack(b.own[0]).first, cosine, schlick(b.ks, cosine),
+                        by_schlick);
     }
 
     CASTRAY_INLINE Float left_by_sheen(Vec w) const {
@@ -137,7 +155,7 @@ struct Principled : ModelDefaults {
       return Float(1.f) - sheen * albedo;
     }
     CASTRAY_INLINE Float left_by_coat(Vec w) const {
-      const Vec left = left_by_lobe(b.albedos, coat_albedo, coat_f0(), w.z);
+      const Vec left = left_by_lobe(b.albedos, coat_albedo, coat_color(), w.z);
       return Float(1.f) - coat * (Float(1.f) - left.x);
     }
 
@@ -150,7 +168,7 @@ struct Principled : ModelDefaults {
       return {ggx_distribution(alpha, h) * ggx_shadowing_over_cos(alpha, wo, wi),
               ggx_reflection_pdf(alpha, wo, h, ggx_cap_scale(alpha, wo))};
     }
-    CASTRAY_INLINE static Vec coat_f0() { return {Float(0.04f), Float(0.04f), Float(0.04f)}; }
+    CASTRAY_INLINE Vec coat_color() const { return {coat_f0, coat_f0, coat_f0}; }
   };
 };
 

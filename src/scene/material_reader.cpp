@@ -56,6 +56,7 @@ class MaterialReader {
       throw InputError(reader.find("anisotropy")->key_place,
                        "\"anisotropy\" cannot go with \"multiple_scattering\", whose tables are of round "
                        "lobes; leave one of them out");
+    if (material_.vertex_colors) material_.eta = material_.k = {};  // the colours change F
     check_thin(reader);
     check_glass_share(reader);
     check_stretched_layers(reader);
@@ -155,10 +156,10 @@ class MaterialReader {
     }
   }
 
-  /// A conductor's reflectance follows from the index at each angle.
+  /// A metal's reflectance follows from the index at each angle.
   void set_metal(const MaterialKey& key, const NamedMetal& metal) {
     material_.*std::get<Vec3d Material::*>(key.field) = metal.reflectance;
-    if (key.parameter != SurfaceParameter::reflectance) return;
+    if (!takes_index(key, material_.type)) return;
     material_.eta = metal.eta;
     material_.k = metal.k;
   }
@@ -184,7 +185,7 @@ class MaterialReader {
     if (const JsonNode* named = reader.find("color_space"))
       space = choose(*named, "colour space", {"srgb", "linear"}) == 0 ? ColorSpace::srgb : ColorSpace::linear;
     read_factor(key, reader.find("factor"));
-    if (key.parameter == SurfaceParameter::reflectance) material_.eta = material_.k = {};  // the image is F
+    if (takes_index(key, material_.type)) material_.eta = material_.k = {};  // the image is F
     const std::filesystem::path path = file_named_by(reader.require("image"), "\"image\"", file_);
     map.texture = builder_.add_texture(path, space, meaning_of(key));
     material_.map(*key.parameter) = map;

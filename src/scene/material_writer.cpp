@@ -20,7 +20,7 @@ double shortest(float value) { return std::stod(fmt::format("{}", value)); }
 Json constant_json(const MaterialKey& key, const Material& material) {
   const Vec3d value = value_of(key, material);
   const auto color = [](const Vec3d& v) { return Json::array({v.x, v.y, v.z}); };
-  if (key.parameter == SurfaceParameter::reflectance && material.has_index())
+  if (takes_index(key, material.type) && material.has_index())
     return {{"eta", color(material.eta)}, {"k", color(material.k)}};
   if (key.kind == Kind::color) return color(value);
   if (key.kind == Kind::flag) return value.x != 0;

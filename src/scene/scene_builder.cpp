@@ -440,6 +440,7 @@ void SceneBuilder::add_glass_shares() {
                               Parameter::clearcoat, Parameter::clearcoat_roughness})
       glass.map(p) = {};
     glass.vertex_colors = false;
+    glass.eta = glass.k = {};
     glass.is_glass_share = true;
     scene.materials[i].glass = add_material(std::move(glass));
   }

@@ -72,7 +72,7 @@ Material brushed(double alpha, double anisotropy, double degrees) {
   return m;
 }
 
-/// A blend with metal under a coat, all of it.
+/// A blend with metal, by its index, under sheen and a coat.
 Material layered(double alpha, double anisotropy, double degrees) {
   Material m = brushed(alpha, anisotropy, degrees);
   m.type = MaterialType::principled;
@@ -82,6 +82,8 @@ Material layered(double alpha, double anisotropy, double degrees) {
   m.sheen = 0.3;
   m.clearcoat = 0.8;
   m.clearcoat_roughness = 0.2;
+  m.clearcoat_ior = 1.8;
+  m.eta = {0.2, 0.5, 1.3}, m.k = {3.7, 2.7, 1.8};
   return m;
 }
 

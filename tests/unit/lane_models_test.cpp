@@ -60,6 +60,9 @@ std::vector<Material> all_materials() {
     list.back().anisotropy = 0.8;
     list.push_back(material(MaterialType::principled, alpha));
     list.back().multiple_scattering = true;
+    list.push_back(material(MaterialType::principled, alpha));
+    list.back().eta = {0.2, 0.9, 2.5}, list.back().k = {3.4, 1.5, 0.8};
+    list.back().clearcoat_ior = 1.8;
   }
   return list;
 }
