@@ -91,7 +91,7 @@ void Film::add(Sum* sums, const Vec3f& radiance) const {
   std::memcpy(&last, sums + 1, sizeof last);
   const Doubles high = __builtin_shufflevector(first, last, 0, 2, 6, 6),
                 low = __builtin_shufflevector(first, last, 1, 3, 7, 7);
-  const Doubles rounded = (v < small) & (v > -small) ? (v + rounder) - rounder : v;
+  const Doubles rounded = ((v < small) & (v > -small)) ? (v + rounder) - rounder : v;
   ExactSum<Doubles> next;
   two_sum(high, rounded, next);
   next.error += low;
