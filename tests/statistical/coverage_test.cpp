@@ -7,6 +7,7 @@
 #include "integrators.h"
 #include "materials/texture.h"
 #include "render_blocks.h"
+#include "same_bytes.h"
 #include "statistics.h"
 #include "test_scenes.h"
 
@@ -111,7 +112,8 @@ TEST_CASE("half a coverage shows half of what is behind, on every integrator", "
   sketch.add_quad({-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}, cloth);
   sketch.scene.environment = Vec3d(1);
   sketch.scene.camera = make_camera({0, 0, 3}, {}, {0, 1, 0}, 36);
-  for (const Way& way : every_way(wavefront_options(16, 64, 3))) {
+  check_same_bytes(sketch.scene, wavefront_options(16, 2, 3));
+  for (const Way& way : every_way(wavefront_options(16, 64, 3), arithmetics())) {
     Mean mean;
     for (const Vec3f& p : render(sketch.scene, way.options).film.image().pixels) mean.add(p.x);
     CAPTURE(way.name, mean.mean(), mean.error());
@@ -122,7 +124,8 @@ TEST_CASE("half a coverage shows half of what is behind, on every integrator", "
 
 TEST_CASE("sheets thin light by what they leave of it, one after the other", "[statistical]") {
   const double share = 0.3;
-  for (const Way& way : every_way(wavefront_options(16, 64, 3)))
+  check_same_bytes(sheets(3, share), wavefront_options(16, 2, 3));
+  for (const Way& way : every_way(wavefront_options(16, 64, 3), arithmetics()))
     for (const Switch mis : {Switch::off, Switch::on}) {
       RenderOptions options = way.options;
       options.mis = mis;
@@ -165,8 +168,9 @@ TEST_CASE("the wavefront agrees with castRay where boxes are only partly there",
     check_options("MIS", mis);
     cut.build = BuildQuality::best;  // rays may meet a triangle twice
     if (name == "diffuse") check_options("boxes cut", cut);
-    scalar.isa = instruction_sets().front();
+    scalar.isa = arithmetics().front();
     check_options(scalar.isa, scalar);
+    check_same_bytes(scene, options);
   };
   check("diffuse", box_with("cornell_box", [](Material& m) { m.coverage = 0.6; }));
   check("metal", box_with("cornell_conductor", [](Material& m) { m.coverage = 0.5, m.alpha = 0.3; }));
@@ -228,7 +232,8 @@ TEST_CASE("without jitter every sample meets its own holes", "[statistical]") {
 TEST_CASE("masked leaves look like leaves cut from triangles", "[statistical]") {
   const Scene masked = leaves(150, true), cut = leaves(150, false);
   const Blocks expected = blocks_of(cut, wavefront_options(side, 16, 1), 24);
-  for (const Way& way : every_way(wavefront_options(side, 16, 1)))
+  check_same_bytes(masked, wavefront_options(side, 2, 1));
+  for (const Way& way : every_way(wavefront_options(side, 16, 1), arithmetics()))
     check_same_mean(way.name, expected, blocks_of(masked, way.options, 24));
 }
 
@@ -246,7 +251,8 @@ TEST_CASE("a lamp that is half there gives half its light", "[statistical]") {
     return scene;
   };
   const Blocks expected = blocks_of(room(false), wavefront_options(side, 16, 1), 24);
-  for (const Way& way : every_way(wavefront_options(side, 16, 1)))
+  check_same_bytes(room(true), wavefront_options(side, 2, 1));
+  for (const Way& way : every_way(wavefront_options(side, 16, 1), arithmetics()))
     for (const Switch mis : {Switch::off, Switch::on}) {
       RenderOptions options = way.options;
       options.mis = mis;
@@ -256,7 +262,8 @@ TEST_CASE("a lamp that is half there gives half its light", "[statistical]") {
   dim.materials[1].ke = dim.materials[1].ke * 0.5;
   thin.materials[1].coverage = 0.5;
   const Blocks half = blocks_of(dim, wavefront_options(side, 16, 1), 24);
-  for (const Way& way : every_way(wavefront_options(side, 16, 1)))
+  check_same_bytes(thin, wavefront_options(side, 2, 1));
+  for (const Way& way : every_way(wavefront_options(side, 16, 1), arithmetics()))
     check_same_mean(way.name + ", share", half, blocks_of(thin, way.options, 24));
 }
 

@@ -36,7 +36,8 @@ void check_parted_room(const std::string& name, const Material& block) {
   RenderOptions reference = wavefront_options(64);
   reference.mis = Switch::on;
   const Expected expected(scene, reference, 48);
-  for (const std::string& isa : instruction_sets())
+  check_same_bytes(scene, wavefront_options(2));
+  for (const std::string& isa : arithmetics())
     for (const AccelKind accel : {AccelKind::list, AccelKind::bvh}) {
       RenderOptions options = wavefront_options(8);
       options.isa = isa;

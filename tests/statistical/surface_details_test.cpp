@@ -223,9 +223,10 @@ TEST_CASE("kernels agree with castRay where everything differs from point to poi
   RenderOptions reference = wavefront_options(4);
   reference.mis = Switch::on;
   const Expected expected(scene, reference);
-  const std::vector<std::string> all = instruction_sets();
-  for (const std::string& isa : {all.front(), all.back()}) {
-    RenderOptions options = wavefront_options(isa == "scalar" ? 1 : 2);
+  check_same_bytes(scene, wavefront_options(2));
+  check_same_bytes(instanced, wavefront_options(2));
+  for (const std::string& isa : arithmetics()) {
+    RenderOptions options = wavefront_options(has_fma(isa) ? 2 : 1);
     options.isa = isa;
     options.mis = Switch::on;
     expected.check(isa, scene, options);

@@ -206,7 +206,7 @@ TEST_CASE("every form of the wavefront has the same mean", "[statistical]") {
   };
   check("tree", [](RenderOptions& o) { o.accel = AccelKind::bvh; });
   check("tree, generic", [](RenderOptions& o) { o.accel = AccelKind::bvh, o.generic = true; });
-  check("scalar", [](RenderOptions& o) { o.isa = "scalar"; });
+  check("without fused operations", [](RenderOptions& o) { o.isa = arithmetics().front(); });
   check("MIS", [](RenderOptions& o) { o.mis = Switch::on; });
   check("independent numbers", [](RenderOptions& o) { o.sampler = SamplerKind::independent; });
   check("fixed roulette", [](RenderOptions& o) { o.rr = 0.7; });

@@ -9,6 +9,7 @@
 #include "castray/render.h"
 #include "integrators.h"
 #include "render_blocks.h"
+#include "same_bytes.h"
 #include "test_scenes.h"
 
 // Renders of the wavefront against castRay in double precision, block by block.
@@ -58,7 +59,8 @@ struct Expected : ExpectedBlocks {
 
   /// The wavefront by each instruction set, over list and tree.
   void check_each_kernel(const Scene& scene) const {
-    for (const std::string& isa : instruction_sets())
+    check_same_bytes(scene, wavefront_options(2));
+    for (const std::string& isa : arithmetics())
       for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
         check_with(isa + (accel == AccelKind::list ? ", list" : ", tree"), scene, [&](RenderOptions& o) {
           o.isa = isa;
