@@ -75,7 +75,7 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     k.albedo = albedo_rows();
     k.albedo_rows = LobeAlbedoRows::steps;
     values[slot_alpha] = LobeAlbedoRows::alpha_of(row);
-    descriptor.finish(m, (*rows_)[row], values.data());
+    descriptor.finish(m, LobeAlbedoRows::all()[row], values.data());
   } else if (has_lobe_table(m)) {
     const LobeWidths widths{values[slot_alpha], lobe_aspect(m)};
     const LobeAlbedo& lobe = lobes_.of(widths.first, widths.second);
@@ -154,12 +154,11 @@ std::uint32_t KernelMaterials::albedo_offset(const LobeWidths& widths, const Lob
 }
 
 std::uint32_t KernelMaterials::albedo_rows() {
-  if (!rows_) {
-    rows_.emplace();
+  if (!first_row_) {
     first_row_ = static_cast<std::uint32_t>(albedos.size() * albedo_floats);
-    for (const LobeAlbedo& lobe : rows_->rows()) albedos.push_back(kernel_albedo(lobe));
+    for (const LobeAlbedo& lobe : LobeAlbedoRows::all().rows()) albedos.push_back(kernel_albedo(lobe));
   }
-  return first_row_;
+  return *first_row_;
 }
 
 const KernelMap* KernelMaterials::single_map(const Scene& scene, const TextureMap& map, float gain) {

@@ -39,8 +39,7 @@ class KernelMaterials {
 
   LobeAlbedos lobes_;
   std::map<LobeWidths, std::uint32_t> albedo_offsets_;  ///< by alpha
-  std::optional<LobeAlbedoRows> rows_;
-  std::uint32_t first_row_ = 0;
+  std::optional<std::uint32_t> first_row_;
   std::deque<std::vector<KernelMap>> maps_;  ///< of each of `details`
   bool filtered_ = false;
   std::deque<std::array<std::uint8_t, 8>> small_images_;  ///< of fewer than four bytes

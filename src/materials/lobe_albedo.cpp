@@ -79,6 +79,11 @@ void LobeAlbedo::find_mean() {
   }
 }
 
+const LobeAlbedoRows& LobeAlbedoRows::all() {
+  static const LobeAlbedoRows rows;
+  return rows;
+}
+
 LobeAlbedoRows::LobeAlbedoRows() {
   constexpr int stride = 4;
   static_assert(steps % stride == 0);

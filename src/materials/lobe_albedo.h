@@ -107,13 +107,13 @@ class LobeAlbedos {
 };
 
 /// Tables for what an image of alpha can say: alpha is rounded to (row / steps)^2, as fine in roughness as 8
-/// bits are. Every fourth one is computed, the others lie between two.
+/// bits are. Every fourth one is computed, the others lie between two: 0.3 s, once for all scenes.
 class LobeAlbedoRows {
  public:
+  static const LobeAlbedoRows& all();
+
   static constexpr int steps = 256;
   static constexpr int first = 3;  ///< the least whose alpha is not smooth
-
-  LobeAlbedoRows();
 
   template <class T>
   static int row_of(T alpha) {
@@ -125,6 +125,8 @@ class LobeAlbedoRows {
   const std::vector<LobeAlbedo>& rows() const { return rows_; }
 
  private:
+  LobeAlbedoRows();
+
   std::vector<LobeAlbedo> rows_;
 };
 

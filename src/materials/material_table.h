@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "castray/scene.h"
@@ -15,7 +14,6 @@ class MaterialTable {
   explicit MaterialTable(const std::vector<Material>& materials) : materials_(materials) {
     bsdfs_.reserve(materials.size());
     for (const Material& m : materials) {
-      if ((has_lobe_rows(m) || has_clearcoat_rows(m)) && !rows_) rows_.emplace();
       SurfaceValues<double> values(m);
       LobeTables& lobes = lobes_.emplace_back();
       if (has_lobe_table(m) && !has_lobe_rows(m))
@@ -43,12 +41,12 @@ class MaterialTable {
     if (has_lobe_rows(materials_[material])) {
       const int row = LobeAlbedoRows::row_of(values.at(slot_alpha));
       values.at(slot_alpha) = LobeAlbedoRows::alpha_of(row);
-      lobes.own = &(*rows_)[row];
+      lobes.own = &LobeAlbedoRows::all()[row];
     }
     if (has_clearcoat_rows(materials_[material])) {
       const int row = clearcoat_row(values.at(slot_clearcoat_roughness));
       values.at(slot_clearcoat_roughness) = static_cast<double>(row) / LobeAlbedoRows::steps;
-      lobes.clearcoat = &(*rows_)[row];
+      lobes.clearcoat = &LobeAlbedoRows::all()[row];
     }
     return lobes;
   }
@@ -68,8 +66,7 @@ class MaterialTable {
   std::vector<Material> materials_;
   std::vector<Bsdf<T>> bsdfs_;
   LobeAlbedos albedos_;
-  std::optional<LobeAlbedoRows> rows_;  ///< where an image gives an alpha
-  std::vector<LobeTables> lobes_;       ///< of each material, without rows
+  std::vector<LobeTables> lobes_;  ///< of each material, without rows
 };
 
 }  // namespace castray

@@ -57,10 +57,13 @@ struct Expected : ExpectedBlocks {
     check(what, scene, options);
   }
 
-  /// The wavefront by each instruction set, over list and tree.
+  /// The wavefront by each instruction set, over list and tree: by the bytes, or the means.
   void check_each_kernel(const Scene& scene) const {
     check_same_bytes(scene, wavefront_options(2));
-    for (const std::string& isa : arithmetics())
+    check_means(scene, arithmetics());
+  }
+  void check_means(const Scene& scene, const std::vector<std::string>& sets) const {
+    for (const std::string& isa : sets)
       for (const AccelKind accel : {AccelKind::list, AccelKind::bvh})
         check_with(isa + (accel == AccelKind::list ? ", list" : ", tree"), scene, [&](RenderOptions& o) {
           o.isa = isa;
