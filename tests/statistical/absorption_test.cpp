@@ -89,7 +89,7 @@ TEST_CASE("kernels absorb in glass as castRay does, however paths are shared", "
   for (const double alpha : {0., 0.2}) {
     const Scene scene = filled_block(alpha);
     const Expected expected(scene, wavefront_options(16), 16);
-    // few pixels of rough glass in a sky differ by a rounding error between sets, where MIS is on
+    // a few pixels differ by a rounding error between sets of one arithmetic, where MIS is on
     if (alpha > 0) expected.check_means(scene, instruction_sets());
     for (const Switch caustics : {Switch::on, Switch::off})
       for (const bool shared : {true, false})
