@@ -34,17 +34,19 @@ class Screen {
   }
 
  private:
+  static constexpr char escape = '\x1b';
+
   static std::size_t length_of(char first) {
     const auto byte = static_cast<unsigned char>(first);
     return byte < 0x80 ? 1 : byte < 0xe0 ? 2 : byte < 0xf0 ? 3 : 4;
   }
 
-  /// Takes one character or sequence; returns its bytes.
+  /// Takes one character or sequence; returns its bytes. One that the next sequence cuts short ends there.
   std::size_t step(std::string_view text) {
-    if (text[0] == '\x1b') return sequence(text);
+    if (text[0] == escape) return sequence(text);
     if (text[0] == '\r') return column_ = 0, 1;
     if (text[0] == '\n') return line_feed(), 1;
-    const std::size_t length = length_of(text[0]);
+    const std::size_t length = std::min(length_of(text[0]), text.find(escape));
     put(std::string(text.substr(0, length)));
     return length;
   }
@@ -69,9 +71,11 @@ class Screen {
   }
 
   std::size_t sequence(std::string_view text) {
+    if (text.size() > 1 && text[1] == escape) return 1;
     const std::size_t end = text.find_first_not_of("0123456789;?", 2);
     if (text.size() < 3 || text[1] != '[' || end == text.npos)
       throw std::runtime_error("an escape sequence that is none");
+    if (text[end] == escape) return end;
     obey(std::string(text.substr(2, end - 2)), text[end]);
     return end + 1;
   }
