@@ -1,11 +1,10 @@
 # The tests that take longest, in seconds of processor time: ctest starts them first, so that no core waits at the end.
 # A clean checkout has no measurements of its own; a name that is gone is passed over.
-set_tests_properties("statistical/kernels agree with castRay where everything differs from point to point" PROPERTIES COST 20)
 set_tests_properties("statistical/light points on an image that emits are unbiased" PROPERTIES COST 50)
-set_tests_properties("statistical/the wavefront agrees with castRay on numbers by image" PROPERTIES COST 6)
 set_tests_properties("golden/every kernel renders every scene as the stored films show it" PROPERTIES COST 25)
 set_tests_properties("statistical/every way of choosing light points has the same mean" PROPERTIES COST 25)
 set_tests_properties("docs/every command of the pages runs as written, after those before it" PROPERTIES COST 25)
+set_tests_properties("statistical/kernels agree with castRay where everything differs from point to point" PROPERTIES COST 20)
 set_tests_properties("unit/a scene is read alike however it is written" PROPERTIES COST 20)
 set_tests_properties("numerics/lamps of any size light as by the reference in double" PROPERTIES COST 20)
 set_tests_properties("numerics/things of any size, seen close, are lit as by the reference in double" PROPERTIES COST 20)

@@ -86,7 +86,7 @@ class Film {
   std::uint32_t count(int x, int y) const { return counts_[index(x, y)]; }
 
   /// The means, as an image of the window's size.
-  Image image() const;
+  Image image(int threads = 1) const;
 
   /// Starts to keep the sums of each replicate apart, per block. All samples so far must be of one replicate.
   void keep_replicates();

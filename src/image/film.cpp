@@ -150,8 +150,9 @@ Vec3d Film::splats_over_paths(const Vec3d& splats, double paths) const {
   return splats * (double(window_.full_width) * window_.full_height / paths);
 }
 
-Image Film::image() const {
+Image Film::image(int threads) const {
   Image image(width(), height());
+#pragma omp parallel for schedule(static) num_threads(threads)
   for (int y = 0; y < height(); ++y)
     for (int x = 0; x < width(); ++x) image.at(x, y) = Vec3f(mean(window_.x0 + x, window_.y0 + y));
   return image;

@@ -99,16 +99,6 @@ void keep_known(PixelCouplings& weights, const DifferenceSums& sums, int half, i
   }
 }
 
-/// The same as `Film::image`, by several threads.
-Image means_of(const Film& film, int threads) {
-  Image image(film.width(), film.height());
-  const Window& window = film.window();
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < film.height(); ++y)
-    for (int x = 0; x < film.width(); ++x) image.at(x, y) = Vec3f(film.mean(window.x0 + x, window.y0 + y));
-  return image;
-}
-
 /// Whether a half has two samples of any pixel. Of one sample, differences are those of the means.
 bool may_need_corrections(const DifferenceSums& sums) {
   const auto& counts = sums.all_counts();
@@ -131,7 +121,7 @@ PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weight
 
 Image image_of(const Film& film, int threads) {
   if (threads <= 0) threads = available_threads();
-  Image image = means_of(film, threads);
+  Image image = film.image(threads);
   const DifferenceSums& sums = film.differences();
   if (!sums.kept() || !may_need_corrections(sums)) return image;
   const Window& window = film.window();

@@ -42,8 +42,9 @@ class RecentRows {
   explicit RecentRows(int width) : plane_(width, 3 * kept) {}
   float* row(std::size_t c, int y) { return plane_.row(static_cast<int>(c) * kept + (y & (kept - 1))); }
 
- private:
   static constexpr int kept = 4;  ///< three to read around one, and one to write; a power of 2
+
+ private:
   PixelPlane plane_;
 };
 
@@ -342,7 +343,7 @@ PixelPlanes ScreenedPoisson::solve() { return multigrid_->solve(); }
 std::uint64_t bytes_to_solve(int width, int height, int threads) {
   constexpr std::uint64_t planes_of_level =
       3 + 1 + 3 * 3;  // couplings, their inverse diagonal, b, x and next
-  constexpr int rows_of_a_band = 24 + 1;
+  constexpr int rows_of_a_band = 2 * 3 * RecentRows::kept + 1;  // relaxed once and twice, and the residual
   std::uint64_t bytes = static_cast<std::uint64_t>(threads) * PixelPlane::bytes_of(width, rows_of_a_band);
   for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
     bytes += planes_of_level * PixelPlane::bytes_of(w, h);

@@ -97,8 +97,6 @@ using LobeWidths = std::pair<double, double>;
 class LobeAlbedos {
  public:
   const LobeAlbedo& of(double alpha, double aspect = 1) {
-    const auto found = tables_.find({alpha, aspect});
-    if (found != tables_.end()) return found->second;
     return tables_.try_emplace({alpha, aspect}, alpha, aspect).first->second;
   }
 

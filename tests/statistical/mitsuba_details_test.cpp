@@ -46,9 +46,10 @@ const std::vector<std::string> details{"colours", "holes", "normals", "heights",
 void check_against_mitsuba(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     const std::string file = golden + folder + name;
+    const Expected expected(file);
     check_same_bytes(load_scene(file + ".json"), wavefront_options(64, 2, 1));
     for (const Way& way : every_way(wavefront_options(64, 4, 1), arithmetics()))
-      check(file + ".json", Expected(file), way);
+      check(file + ".json", expected, way);
   }
 }
 
