@@ -61,7 +61,7 @@ Scene room_with_cube(double size) {
   return sketch.scene;
 }
 
-double mean_of(const Scene& scene, const RenderOptions& options) {
+double mean_of(const PreparedScene& scene, const RenderOptions& options) {
   const RenderResult result = render(scene, options);
   CHECK(result.film.nonfinite_samples == 0);
   double sum = 0;
@@ -71,7 +71,8 @@ double mean_of(const Scene& scene, const RenderOptions& options) {
 
 Mean mean_over_seeds(const Scene& scene, RenderOptions options, std::uint64_t seeds) {
   Mean mean;
-  for (options.seed = 1; options.seed <= seeds; ++options.seed) mean.add(mean_of(scene, options));
+  const PreparedScene prepared(scene, options);
+  for (options.seed = 1; options.seed <= seeds; ++options.seed) mean.add(mean_of(prepared, options));
   return mean;
 }
 

@@ -131,9 +131,11 @@ TEST_CASE("sheets thin light by what they leave of it, one after the other", "[s
       options.mis = mis;
       const auto brightness = [&](int count) {
         Mean mean;
+        const Scene scene = sheets(count, share);
+        const PreparedScene prepared(scene, options);
         for (options.seed = 0; options.seed < 16; ++options.seed) {
           double sum = 0;
-          for (const Vec3f& p : render(sheets(count, share), options).film.image().pixels)
+          for (const Vec3f& p : render(prepared, options).film.image().pixels)
             sum += static_cast<double>(p.x) / (16 * 16);
           mean.add(sum);
         }
