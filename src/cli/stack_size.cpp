@@ -25,16 +25,17 @@ std::size_t own_stack_size() {
 }  // namespace
 
 void check_stack_size() {
-  constexpr std::size_t least = 256 * 1024;  // twice what the deepest scenes were seen to take
-  std::size_t size = own_stack_size();       // of all threads, unless the environment says more of the others
+  constexpr std::size_t least = 256 * 1024;   // twice what the deepest scenes were seen to take
+  constexpr std::size_t advised = 2 * least;  // the system keeps some KiB of what `ulimit -s` says
+  std::size_t size = own_stack_size();  // of all threads, unless the environment says more of the others
   if (std::getenv("OMP_STACKSIZE") || std::getenv("GOMP_STACKSIZE")) {
 #pragma omp parallel num_threads(2) reduction(min : size)
     size = std::min(size, own_stack_size());
   }
   if (size < least)
     throw InputError(fmt::format(
-        "stacks of {} KiB are too small; set `ulimit -s` and OMP_STACKSIZE, if it is set, to {}K at least",
-        size / 1024, least / 1024));
+        "stacks of {0} KiB are too small; set `ulimit -s {1}`, and OMP_STACKSIZE to {1}K if it is set",
+        size / 1024, advised / 1024));
 }
 
 }  // namespace castray::cli

@@ -191,7 +191,7 @@ class Weights {
       const float variance = at_least(among, own) + doubtful / static_cast<float>(count[x]);
       const float trusted = 1 / variance, most = stiffest * screen[x];
       const float found = most < trusted ? most : trusted;
-      weight[x] = (count[x] > 0) & (n >= 2) ? found : 0;
+      weight[x] = ((count[x] > 0) & (n >= 2)) ? found : 0;
     }
   }
 
