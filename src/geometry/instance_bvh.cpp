@@ -55,8 +55,10 @@ void add_boxes(const WideBvhView& bvh, std::uint32_t child, int levels, const Bo
   }
 }
 
+/// None of an object without triangles, which no instance places.
 std::vector<Bounds> boxes_of(const WideBvhView& bvh) {
   std::vector<Bounds> boxes;
+  if (bvh.triangles == 0) return boxes;
   Bounds all;
   all.lower = {bvh.lower[0], bvh.lower[1], bvh.lower[2], 0};
   all.upper = {bvh.upper[0], bvh.upper[1], bvh.upper[2], 0};

@@ -374,6 +374,8 @@ void SceneBuilder::drop_flat() {
     mesh = {first, kept(mesh.first, mesh.count)};
     first += mesh.count;
   }
+  std::erase_if(scene.instances,
+                [&](const SceneInstance& at) { return scene.shared_meshes[at.mesh].count == 0; });
   warn_of_dropped(TriangleFault::no_area, {scene.file.string()},
                   static_cast<std::uint64_t>(std::ranges::count(keep, false)));
   keep_triangles(mesh_, keep);

@@ -141,6 +141,19 @@ TEST_CASE("an instance has the material that it names, and is a light if that em
                     Catch::Contains("grey"));
 }
 
+TEST_CASE("trees leave objects without triangles out: lamps alone, and what rounding makes flat") {
+  const Scene scene = load_with(R"("objects": {
+      "lamp": [ { "obj": "lamp.obj", "material": "glow" } ], "none": [],
+      "edge": [ { "obj": "thing.obj", "material": "grey", "transform": [ { "scale": [1,1e-60,1] } ] } ],
+      "thing": [ { "obj": "thing.obj", "material": "grey" } ] },
+    "instancing": "keep", "instances": [ { "object": "lamp" }, { "object": "none" }, { "object": "edge" },
+      { "object": "thing" } ])");
+  CHECK(scene.shown_triangles() == 2);
+  CHECK(scene.instances.size() == 1);
+  CHECK(InstanceBvh::build(scene, 1, BuildQuality::fast).stats().triangles == 2);
+  CHECK(SceneBvh::build(scene, 1).stats().triangles == 2);
+}
+
 TEST_CASE("an instance that its transform skews too much becomes a mesh") {
   const Scene scene = load_with(object + R"("instancing": "keep", "instances": [ { "object": "thing",
       "transform": [ { "rotate": [0,0,1,45] }, { "scale": [1,1e3,1] }, { "rotate": [0,0,1,45] } ] } ])");
