@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "castray/error.h"
+#include "castray/image.h"
 #include "cli/display_flags.h"
 #include "cli/memory_limit.h"
 #include "cli/render_passes.h"
@@ -20,6 +21,7 @@
 #include "core/text.h"
 #include "plan/option_names.h"
 #include "render/prepared_scene.h"
+#include "scene/environment_reader.h"
 
 namespace castray::cli {
 
@@ -88,9 +90,13 @@ void set_reuse(Request r, Text flag, Text text) {
 
 void set_environment(Request r, Text flag, Text text) {
   r.scene.environment = Vec3d{};
+  r.scene.environment_image.reset();
   if (text == "off") return;
-  if (split(text, ',').size() != 3)
-    refuse(flag, text, "R,G,B or off; an image around the scene is not read yet");
+  if (is_image_format(text)) {
+    r.scene.environment_image = text;
+    return;
+  }
+  if (split(text, ',').size() != 3) refuse(flag, text, "R,G,B, an image file or off");
   r.scene.environment = parse_vector(flag, text);
   for (int i = 0; i < 3; ++i)
     if (!radiance_range.contains((*r.scene.environment)[i]))
@@ -140,8 +146,9 @@ const RenderFlag flags[] = {
      [](Request r, Text f, Text t) { r.scene.camera.up = parse_vector(f, t); }, false},
     {"fov", "DEGREES", "vertical field of view [40]", view,
      [](Request r, Text f, Text t) { r.scene.camera.fov = parse_number(f, t); }, false},
-    {"environment", "R,G,B|off", "radiance from all around [the scene's; 1,1,1 where nothing emits]",
-     lighting, set_environment, false},
+    {"environment", "R,G,B|FILE|off",
+     "radiance from all around, or an image of it [the scene's; 1,1,1 where nothing emits]", lighting,
+     set_environment, false},
     {"two-sided-lights", nullptr, "all lights shine on both sides", lighting,
      [](Request r, Text f, Text t) { r.scene.two_sided_lights = parse_on_off(f, t); }, false},
     {"strict", nullptr, "what is missing or odd in the scene's files is an error", lighting,
@@ -348,6 +355,7 @@ void apply_flags(const RenderRequest& request, Scene& scene) {
   if (flags.environment) {
     scene.environment = *flags.environment;
     scene.environment_image = {};
+    if (flags.environment_image) replace_environment(*flags.environment_image, scene);
     scene.default_environment = false;
   }
   if (flags.two_sided_lights)

@@ -28,7 +28,8 @@ struct CameraFlags {
 /// What the flags change of the scene that its files tell.
 struct SceneFlags {
   CameraFlags camera;
-  std::optional<Vec3d> environment;
+  std::optional<Vec3d> environment;                        ///< radiance from everywhere
+  std::optional<std::filesystem::path> environment_image;  ///< instead, in latitude and longitude
   bool two_sided_lights = false;
   bool strict = false;  ///< warnings of the scene's files are errors
 };

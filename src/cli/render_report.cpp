@@ -77,7 +77,7 @@ void RenderReport::print_scene(bool verbose) const {
   print_warnings(verbose);
   if (scene.default_environment)
     fmt::print(stderr,
-               "castray: nothing in {} emits {}, so a white sky does; --environment R,G,B|off decides\n",
+               "castray: nothing in {} emits {}, so a white sky does; --environment R,G,B|FILE|off decides\n",
                scene.file.string(), scene.lights.empty() ? "light" : "more than white");
   else if (is_dark(scene))
     fmt::print(stderr, "castray: warning: {}: {}\n", scene.file.string(), dark_scene);

@@ -2,8 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+
 #include "core/files.h"
 #include "core/text.h"
+#include "materials/brightest_emission.h"
 #include "materials/environment_image.h"
 #include "materials/texture.h"
 #include "scene/sky.h"
@@ -114,6 +117,18 @@ void read_environment(const JsonNode& node, const std::filesystem::path& file, S
   if (const JsonNode* rotation = environment.find("rotation"))
     image.rotation = read_number(*rotation, "\"rotation\"", float_range);
   scene.environment = mean_environment(scene);
+}
+
+void replace_environment(const std::filesystem::path& image, Scene& scene) {
+  SceneBuilder builder;
+  builder.scene.environment_image.texture = builder.add_texture(image, ColorSpace::srgb);
+  if (const double brightest = brightest_emission(builder.scene); !(brightest <= radiance_range.greatest))
+    throw InputError(SourcePlace{image.string()},
+                     fmt::format("its values are as great as {:.3g}; radiance must be {}", brightest,
+                                 radiance_range.text()));
+  scene.environment = mean_environment(builder.scene);
+  scene.textures.push_back(std::move(builder.scene.textures.front()));
+  scene.environment_image = {.texture = static_cast<int>(scene.textures.size()) - 1};
 }
 
 }  // namespace castray

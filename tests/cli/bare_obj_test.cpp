@@ -7,6 +7,7 @@
 
 #include "castray/image.h"
 #include "castray/scene.h"
+#include "core/files.h"
 #include "run_castray.h"
 
 using namespace castray;
@@ -75,6 +76,24 @@ TEST_CASE("a mesh without lights is lit by a white sky, or by the environment of
   const RunResult dark = mesh.render({"--environment", "off"});
   CHECK_THAT(dark.err, Contains("nothing in the scene emits light: the image will be black"));
   CHECK(brightest(mesh.image()) == 0);
+}
+
+TEST_CASE("the environment of the flag may be an image, as in a scene file") {
+  const Mesh mesh(square + "f 1 2 3 4\n");
+  Image sky(4, 2);
+  for (std::size_t i = 0; i < 8; ++i) sky.pixels[i] = Vec3f(0.5f * static_cast<float>(i));
+  write_image(mesh.folder / "sky.exr", sky);
+  std::ofstream(mesh.folder / "sky.json")
+      << R"({ "meshes": [ { "obj": "o.obj" } ], "environment": { "image": "sky.exr" } })";
+  const auto picture = [&](std::vector<std::string> scene) {
+    scene.insert(scene.begin(), "render");
+    for (const char* word : {"-q", "--size", "8x8", "--spp", "2", "-o", "o.pfm"}) scene.push_back(word);
+    CHECK(run_castray(scene, mesh.folder.path()).err == "");
+    return read_file(mesh.folder / "o.pfm");
+  };
+  const std::string by_flag = picture({"o.obj", "--environment", "sky.exr"});
+  CHECK(brightest(mesh.image()) > 1);
+  CHECK(by_flag == picture({"sky.json"}));
 }
 
 TEST_CASE("a mesh whose screen glows no brighter than white is lit by the sky, one with a lamp is not") {
