@@ -224,9 +224,9 @@ void check_film_file(const std::filesystem::path& file);
 /// Bytes of memory and of files for a pixel of films like this one, replicates left out.
 std::size_t bytes_of_pixel(const Film& film);
 
-/// Writes the film losslessly to .film files, and its image, made once, to others (see `write_image`). The
-/// bytes of a .film depend only on the samples and `key`, not on the order in which they were added and
-/// merged. `threads`: as for `image_of`; `passes`: as for `write_image`.
+/// Writes the film losslessly to .film files, and its image, made once, to others (see `write_image`); throws
+/// InputError once all that can be is written. A .film's bytes depend on its samples and `key` alone, not on
+/// the order of adding and merging. `threads`: as for `image_of`; `passes`: as for `write_image`.
 void write_film(const std::vector<std::filesystem::path>& files, const Film& film,
                 const Display& display = {}, const Metadata& metadata = {}, int threads = 0,
                 const Passes& passes = {});

@@ -52,7 +52,9 @@ void Checkpoint::save(const Film& film) {
 }
 
 void Checkpoint::save_if_due(const Film& film) {
-  if (Clock::now() - saved_ >= between_) save(film);
+  if (Clock::now() - saved_ < between_) return;
+  saved_ = Clock::now();  // where it fails, too: not to be tried all the time
+  save(film);
 }
 
 }  // namespace castray::cli

@@ -174,6 +174,15 @@ bool RenderRun::watch(const Progress& progress) {
 }
 
 void RenderRun::watch_film(const Film& film) {
+  try {
+    save_meanwhile(film);
+  } catch (const InputError& error) {  // what cannot be written now may be written at the end
+    if (!request_.quiet) display_.tell(fmt::format("warning: {}; the render goes on", error.what()));
+  }
+  if (seconds_since(viewed_) >= seconds_between_views) view(film);
+}
+
+void RenderRun::save_meanwhile(const Film& film) {
   const bool requested = snapshot_requested();
   if (checkpoint_ && requested)
     checkpoint_->save(film);
@@ -183,10 +192,10 @@ void RenderRun::watch_film(const Film& film) {
   if (requested && !request_.quiet)
     display_.tell(
         fmt::format("snapshot of {} samples per pixel written", samples_text(film.samples_per_pixel())));
-  if (seconds_since(viewed_) >= seconds_between_views) view(film);
 }
 
 void RenderRun::write_snapshot(const Film& film) {
+  previewed_ = Clock::now();
   std::vector<fs::path> files;
   for (const fs::path& output : request_.outputs)
     if (!is_standard_output(output)) files.push_back(output);
@@ -220,8 +229,14 @@ void RenderRun::write(const std::vector<fs::path>& outputs, const Film& film) co
 
 void RenderRun::save(const Film& film) {
   const Phase phase(mode(), "writing");
-  if (checkpoint_) checkpoint_->save(film);
+  std::optional<InputError> failed;
+  try {
+    if (checkpoint_) checkpoint_->save(film);
+  } catch (const InputError& error) {
+    failed = error;
+  }
   write(request_.outputs, film);
+  if (failed) throw *failed;
 }
 
 }  // namespace castray::cli

@@ -35,7 +35,8 @@ class RenderRun {
   /// were not finite. Throws BandsInterrupted.
   RenderResult run_in_bands(const Scene& scene, int band, int margin);
 
-  /// Writes the film to the checkpoint, then to the outputs.
+  /// Writes the film to the checkpoint, then to the outputs: to all that can be written. Throws InputError
+  /// where one cannot.
   void save(const Film& film);
 
  private:
@@ -48,6 +49,8 @@ class RenderRun {
   /// Returns whether the render goes on.
   bool watch(const Progress& progress);
   void watch_film(const Film& film);
+  /// Writes the checkpoint and the outputs so far, where they are due or asked for. Throws InputError.
+  void save_meanwhile(const Film& film);
   void write_snapshot(const Film& film);
   bool is_preview_due() const;
   void open_viewers(const Scene& scene);

@@ -318,14 +318,20 @@ Film read_film_header(const std::filesystem::path& file) {
 void write_film(const std::vector<std::filesystem::path>& files, const Film& film, const Display& display,
                 const Metadata& metadata, int threads, const Passes& passes) {
   std::optional<Image> image;
-  for (const auto& file : files) {
-    if (is_film_format(file)) {
-      write_file(file, [&](std::ostream& out) { FilmFile::write(film, out); });
-      continue;
-    }
+  const auto write = [&](const std::filesystem::path& file) {
+    if (is_film_format(file)) return write_file(file, [&](std::ostream& out) { FilmFile::write(film, out); });
     if (!image) image = image_of(film, threads);
     write_image(file, *image, display, metadata, noise_of(film), passes);
+  };
+  std::optional<InputError> failed;
+  for (const auto& file : files) {
+    try {
+      write(file);
+    } catch (const InputError& error) {
+      if (!failed) failed = error;
+    }
   }
+  if (failed) throw *failed;
 }
 
 void write_film(const std::filesystem::path& file, const Film& film, const Display& display,

@@ -61,6 +61,19 @@ int render_killed(const TemporaryFolder& folder, const std::string& spp, int kil
 
 }  // namespace
 
+TEST_CASE("outputs that cannot be written cost none of the others") {
+  const TemporaryFolder folder;
+  RunSettings settings{.folder = folder.path(), .largest_file = 100000};  // a film has 900 000 bytes
+  const RunResult result = run_castray(checkpointed({"--spp", "8", "--checkpoint-every", "0", "-o", "x.film",
+                                                     "-o", "x.png", "--progress", "off"}),
+                                       settings);
+  CHECK(result.exit_code == 2);
+  CHECK_THAT(result.err, Contains("castray: warning: c.film: cannot be written") &&
+                             Contains("castray: error: x.film: cannot be written"));
+  CHECK(std::filesystem::exists(folder / "x.png"));
+  CHECK_FALSE(std::filesystem::exists(folder / "c.film"));
+}
+
 TEST_CASE("a render killed at random moments and resumed ends with the same bytes") {
   const TemporaryFolder folder;
   CHECK(render_killed(folder, "600", 6, 1) > 0);
