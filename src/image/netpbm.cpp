@@ -50,6 +50,10 @@ class Header {
   /// Where the pixels start: behind the single white space that ends the header.
   std::size_t end() const { return std::min(at_ + 1, bytes_.size()); }
   std::size_t rest() const { return bytes_.size() - end(); }
+  /// Of so many bytes: behind a whole CR LF where the file has one byte more than they need.
+  std::size_t end_before(std::size_t count) const {
+    return end() + (rest() == count + 1 && bytes_.substr(at_, 2) == "\r\n");
+  }
 
  private:
   const std::string& name_;
@@ -87,7 +91,8 @@ Decoded read_netpbm(const std::string& name, std::string_view bytes) {
   const std::size_t count = count_values(raster);
   const std::size_t sample_bytes = max_value > 255 ? 2 : 1;
   if (!text && header.rest() < sample_bytes * count) throw InputError({name}, "is truncated");
-  const auto* at = reinterpret_cast<const unsigned char*>(bytes.data()) + header.end();
+  const auto* at =
+      reinterpret_cast<const unsigned char*>(bytes.data()) + header.end_before(sample_bytes * count);
   if (!text && max_value == 255) {
     raster.bytes.assign(at, at + count);
     return {std::move(raster)};
@@ -111,8 +116,9 @@ Decoded read_pfm(const std::string& name, std::string_view bytes) {
   const double scale = header.number("scale", -1e30, 1e30);
   if (scale == 0) throw InputError({name}, "has scale 0, which gives no byte order");
   raster.floats.resize(count_values(raster));
-  if (header.rest() < sizeof(float) * raster.floats.size()) throw InputError({name}, "is truncated");
-  const char* at = bytes.data() + header.end();
+  const std::size_t count = sizeof(float) * raster.floats.size();
+  if (header.rest() < count) throw InputError({name}, "is truncated");
+  const char* at = bytes.data() + header.end_before(count);
   const std::size_t row = raster.floats.size() / static_cast<std::size_t>(raster.height);
   for (std::size_t start = raster.floats.size(); start > 0; start -= row)  // bottom row first
     for (std::size_t i = start - row; i < start; ++i, at += sizeof(float)) {

@@ -73,6 +73,15 @@ TEST_CASE("variances of an EXR file are read and written") {
   CHECK(std::isinf(read_image(folder / "a.exr").noise->freedom));
 }
 
+TEST_CASE("the header of a PFM or PPM file may end in CR LF") {
+  const float pixel[] = {1, 2, 3};
+  std::string bytes = "PF\r\n1 1\r\n-1.0\r\n";
+  bytes.append(reinterpret_cast<const char*>(pixel), sizeof pixel);
+  CHECK(parse_raster("a.pfm", bytes).floats == std::vector<float>{1, 2, 3});
+  CHECK(parse_raster("a.ppm", "P6\r\n1 1\r\n255\r\nabc").bytes == std::vector<unsigned char>{'a', 'b', 'c'});
+  CHECK(parse_raster("a.ppm", "P6 1 1 255\nabc").bytes == std::vector<unsigned char>{'a', 'b', 'c'});
+}
+
 TEST_CASE("variances of a PFM file are in the file beside it, and exact") {
   const TemporaryFolder folder;
   write_image(folder / "a.pfm", test_image(4, 3));
