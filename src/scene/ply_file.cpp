@@ -56,7 +56,16 @@ class PlyReader {
   }
 
   ObjFile read() {
-    for (const PlyElement& element : header_.elements) read_element(element);
+    const auto vertices = std::ranges::find(header_.elements, "vertex", &PlyElement::name);
+    const bool faces_first = vertices != header_.elements.end() &&
+                             std::ranges::any_of(header_.elements.begin(), vertices, holds_faces);
+    if (faces_first) {  // they name vertices, so these are read before
+      const Values start = values_;
+      for (const PlyElement& element : header_.elements)
+        read_element(element, element.name == "vertex", false);
+      values_ = start;
+    }
+    for (const PlyElement& element : header_.elements) read_element(element, !faces_first, true);
     faces_.warn(warnings_);
     if (header_.texture)
       warnings_.add({file_.string()},
@@ -66,7 +75,12 @@ class PlyReader {
   }
 
  private:
-  void read_element(const PlyElement& element) {
+  static bool holds_faces(const PlyElement& element) {
+    return element.name == "face" || element.name == "tristrips";
+  }
+
+  /// Skips vertices, or faces, where they are not wanted.
+  void read_element(const PlyElement& element, bool vertices, bool faces) {
     if (element.properties.empty()) return;
     std::size_t least = 0;
     for (const PlyProperty& p : element.properties) least += Values::bytes_of(p.count.value_or(p.type));
@@ -74,10 +88,14 @@ class PlyReader {
       throw InputError(SourcePlace{file_.string()},
                        fmt::format("the file is too short for its {} elements '{}'", element.count,
                                    printable(element.name)));
-    if (element.name == "vertex")
-      read_vertices(element);
-    else
-      for (std::uint64_t i = 0; i < element.count; ++i) read_lists(element);
+    if (element.name == "vertex" && vertices) return read_vertices(element);
+    const bool wanted = faces && element.name != "vertex";
+    for (std::uint64_t i = 0; i < element.count; ++i) wanted ? read_lists(element) : skip(element);
+  }
+
+  void skip(const PlyElement& element) {
+    double ignored = 0;
+    for (const PlyProperty& property : element.properties) read_value(property, ignored);
   }
 
   void read_vertices(const PlyElement& element) {
@@ -132,7 +150,7 @@ class PlyReader {
     double ignored = 0;
     const bool strips = element.name == "tristrips";
     for (const PlyProperty& property : element.properties) {
-      const bool has_corners = element.name == "face" || strips;
+      const bool has_corners = holds_faces(element);
       if (has_corners && property.count &&
           (property.name == "vertex_indices" || property.name == "vertex_index"))
         read_corners(property, strips);

@@ -24,7 +24,7 @@ class PlyBinaryValues {
  public:
   PlyBinaryValues(std::string_view text, const PlyHeader& header, const std::filesystem::path& file)
       : text_(text),
-        file_(file),
+        file_(&file),
         at_(header.size),
         swap_((header.encoding == PlyEncoding::big_endian) != (std::endian::native == std::endian::big)) {}
 
@@ -54,10 +54,10 @@ class PlyBinaryValues {
   static std::size_t bytes_of(PlyType type) { return size_of(type); }
   std::size_t bytes_left() const { return text_.size() - at_; }
 
-  SourcePlace place() const { return {file_.string()}; }
+  SourcePlace place() const { return {file_->string()}; }
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(SourcePlace{file_.string()}, fmt::format("at byte {}: {}", last_, what));
+    throw InputError(SourcePlace{file_->string()}, fmt::format("at byte {}: {}", last_, what));
   }
 
  private:
@@ -75,7 +75,7 @@ class PlyBinaryValues {
   }
 
   std::string_view text_;
-  const std::filesystem::path& file_;
+  const std::filesystem::path* file_;
   std::size_t at_, last_ = 0;
   bool swap_;
 };
@@ -83,7 +83,7 @@ class PlyBinaryValues {
 class PlyTextValues {
  public:
   PlyTextValues(std::string_view text, const PlyHeader& header, const std::filesystem::path& file)
-      : text_(text), file_(file), at_(header.size), line_(header.lines + 1) {}
+      : text_(text), file_(&file), at_(header.size), line_(header.lines + 1) {}
 
   double next(PlyType) {
     for (; at_ < text_.size() && (is_space(text_[at_]) || is_line_end(text_[at_])); ++at_)
@@ -101,14 +101,14 @@ class PlyTextValues {
   static std::size_t bytes_of(PlyType) { return 2; }  // a digit and a space
   std::size_t bytes_left() const { return text_.size() - at_ + 1; }
 
-  SourcePlace place() const { return {file_.string(), line_}; }
+  SourcePlace place() const { return {file_->string(), line_}; }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(place(), what); }
 
  private:
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
   std::string_view text_;
-  const std::filesystem::path& file_;
+  const std::filesystem::path* file_;
   std::size_t at_;
   int line_;
 };

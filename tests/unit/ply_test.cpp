@@ -116,6 +116,24 @@ TEST_CASE("PLY: ASCII and binary of both byte orders hold the same") {
     }
 }
 
+TEST_CASE("PLY: faces may stand in front of their vertices") {
+  const std::string points =
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float nx\nproperty float ny\nproperty float nz\n";
+  for (const std::string& format : formats) {
+    Writer w(format);
+    w.add(std::uint8_t{3}).add(0).add(1).add(2).end_line();
+    for (int i = 0; i < 3; ++i) {
+      w.add(i == 1 ? 1.f : 0.f).add(i == 2 ? 1.f : 0.f).add(0.f).add(0.f).add(0.f).add(1.f);
+      w.end_line();
+    }
+    const Mesh mesh = read(w.file("element face 1\nproperty list uchar int vertex_index\n" + points)).mesh;
+    CHECK(mesh.triangles == std::vector<Index3>{{0, 1, 2}});
+    CHECK(mesh.triangle_normals == mesh.triangles);
+    CHECK(mesh.positions == std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  }
+}
+
 TEST_CASE("PLY: a remark without \"comment\" in the header is passed over") {
   std::string remark = triangle(face, "3 0 1 2\n");
   remark.insert(remark.find("element"), "Created by Blender3D 247 - www.blender.org, source file: \n");
