@@ -64,8 +64,8 @@ DeltaLight read_delta_light(const JsonNode& node) {
   else
     for (const char* key : {"inner_angle", "outer_angle"}) refuse(key, "a light that is no spot");
   const char* brightness = directional ? "irradiance" : "intensity";
-  light.intensity = read_vector(reader.require(brightness), fmt::format("\"{}\"", brightness),
-                                directional ? radiance_range : not_negative);
+  light.intensity = read_color(reader.require(brightness), fmt::format("\"{}\"", brightness),
+                               directional ? radiance_range : not_negative);
   return light;
 }
 

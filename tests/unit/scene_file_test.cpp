@@ -323,3 +323,11 @@ TEST_CASE("a light whose image is black everywhere is none") {
     "ke": { "image": "t.png", "factor": [5, 5, 5] } } }, "meshes": [ { "obj": "t.obj", "material": "m" } ] })";
   CHECK(load_scene(folder / "s.json").lights.empty());
 }
+
+TEST_CASE("the brightness of a light without size may be a number, which stands for three") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "t.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(folder / "s.json") << R"({ "meshes": [ { "obj": "t.obj" } ], "lights": [
+    { "type": "directional", "direction": [0,0,-1], "irradiance": 2 } ] })";
+  CHECK(load_scene(folder / "s.json").delta_lights.at(0).intensity == Vec3d(2));
+}
