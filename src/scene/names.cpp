@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <set>
 
 namespace castray {
@@ -59,9 +60,13 @@ std::vector<std::string> readings(std::string_view text) {
 
 std::vector<std::string> without_repeats(std::vector<std::string> names) {
   std::set<std::string> taken;
+  std::map<std::string, int> last;  // number that a name got
   for (std::string& name : names) {
-    const std::string wanted = name;
-    for (int n = 2; !taken.insert(name).second; ++n) name = wanted + " " + std::to_string(n);
+    if (taken.insert(name).second) continue;
+    int& n = last.try_emplace(name, 1).first->second;
+    const std::string wanted = std::move(name);
+    do name = wanted + " " + std::to_string(++n);
+    while (!taken.insert(name).second);
   }
   return names;
 }
