@@ -61,6 +61,12 @@ struct Compare {
     if (folders && !heat_map_file.empty())
       throw InputError("--heatmap: draws one pair of images; use --html for folders");
     check_distinct({json, junit, html, heat_map_file});
+    std::error_code ignored;
+    for (const fs::path& output : {json, junit, html, heat_map_file})
+      for (const fs::path& input : {image, reference, limits_file})
+        if (fs::equivalent(output, input, ignored))
+          throw InputError({output.string()},
+                           "is one of the files to be compared, or their limits; give another name");
     for (const fs::path& output : {json, junit, html})
       if (!output.empty()) check_writable(output);
     if (!heat_map_file.empty()) check_output_image(heat_map_file);

@@ -56,6 +56,10 @@ struct Serve {
   }
 
   int run(const CommonFlags& common) const {
+    constexpr int most_port = 65535;
+    if (port < 0 || port > most_port)
+      throw InputError(
+          fmt::format("--port {}: must be between 0, any that is free, and {}", port, most_port));
     Scene scene = load_told(file, given, common);
     try {
       return show(scene, common);

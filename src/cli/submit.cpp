@@ -47,6 +47,8 @@ struct Submit {
     const Scene scene = load_scene(render.scene);
     const RenderRequest request = request_of(render, common, scene);
     for (const fs::path& output : request.outputs) check_output_image(output), s.outputs.push_back(output);
+    if (s.parts < 1) throw InputError("--parts: must be at least 1");
+    if (s.jobs < 1) throw InputError("--jobs: must be at least 1");
     range_of({0, s.parts}, {0, request.options.spp});
     s.scene = render.scene;
     s.name = job_name(scene.name);
