@@ -57,6 +57,13 @@ bool is_special(const fs::path& file) {
   return fs::exists(status) && !fs::is_regular_file(status);
 }
 
+/// What `write` writes. It may seek, as writers of EXR do, which pipes and devices cannot.
+std::string bytes_of(const std::function<void(std::ostream&)>& write) {
+  std::ostringstream bytes;
+  write(bytes);
+  return std::move(bytes).str();
+}
+
 /// Writes to `out`, which goes to `file`. Throws InputError unless all of it arrives.
 void write_stream(const fs::path& file, std::ostream& out, const std::function<void(std::ostream&)>& write) {
   errno = 0;
@@ -158,12 +165,12 @@ void keep(const fs::path& file, const fs::path& previous) {
   if (error) fail(previous, "cannot be written: " + error.message());
 }
 
-void write_special(const fs::path& file, const fs::path& target,
-                   const std::function<void(std::ostream&)>& write) {
+/// Opening a named pipe waits for its reader.
+void write_special(const fs::path& file, const fs::path& target, const std::string& bytes) {
   errno = 0;
   std::ofstream out(target, std::ios::binary);
   if (!out) fail(file, "cannot be opened for writing: " + reason(errno));
-  write_stream(file, out, write);
+  write_stream(file, out, [&bytes](std::ostream& stream) { stream << bytes; });
 }
 
 void write_standard_output(const fs::path& file, const std::string& bytes) {
@@ -258,7 +265,7 @@ void replace_file(const fs::path& file, const fs::path& previous,
                   const std::function<void(std::ostream&)>& write) {
   check_writable(file);
   const fs::path target = link_target(file);
-  if (is_special(target)) return write_special(file, target, write);
+  if (is_special(target)) return write_special(file, target, bytes_of(write));
   TemporaryFile temporary(folder_of(target));
   if (temporary.error()) fail(file, "cannot be written: " + reason(temporary.error()));
   temporary.write(file, write);
@@ -269,11 +276,7 @@ void replace_file(const fs::path& file, const fs::path& previous,
 }  // namespace
 
 void write_file(const fs::path& file, const std::function<void(std::ostream&)>& write) {
-  if (is_standard_output(file)) {
-    std::ostringstream bytes;  // a pipe cannot be sought in
-    write(bytes);
-    return write_standard_output(file, std::move(bytes).str());
-  }
+  if (is_standard_output(file)) return write_standard_output(file, bytes_of(write));
   replace_file(file, {}, write);
 }
 

@@ -27,8 +27,8 @@ bool is_standard_output(const std::filesystem::path& file);
 /// Writes what `write` puts into the stream to a temporary file beside `file`, waits until it is on the
 /// disk, then renames it, and waits for that too, so that `file` is at any time the old one or the new one. A
 /// symbolic link is followed; what is not a regular file (a device, a pipe, the standard output) is written
-/// to directly. Throws InputError, with `file` untouched and no temporary file left, if anything fails or
-/// `write` throws.
+/// to directly, once all bytes are known; a named pipe that nobody reads is waited for, as by cp. Throws
+/// InputError, with `file` untouched and no temporary file left, if anything fails or `write` throws.
 void write_file(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 

@@ -1,8 +1,11 @@
 // The forms in which people write command lines, on every command.
 #include <catch2/catch.hpp>
 
+#include <sys/stat.h>
+
 #include <cstdlib>
 #include <filesystem>
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "cli/argument_forms.h"
@@ -85,6 +88,16 @@ TEST_CASE("a scene is read from the standard input, JSON or OBJ") {
   CHECK_THAT(files.run_with_input({"info", "-"}, "wrong.json").err, Contains("-:2:3: unknown key 'meshs'"));
   CHECK(files.run_with_input(with({"render", "-", "-q"}, small), "s.json").exit_code == 0);
   CHECK(std::filesystem::exists(files.folder / "scene.png"));
+}
+
+TEST_CASE("a named pipe is waited for, and gets the bytes of a file") {
+  const Files files;
+  const std::filesystem::path pipe = files.folder / "pipe.exr";
+  REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+  auto read = std::async(std::launch::async, [&pipe] { return read_file(pipe); });
+  CHECK(files.run(with({"render", "s.json", "-q", "-o", "pipe.exr"}, small)).exit_code == 0);
+  CHECK(files.run(with({"render", "s.json", "-q", "-o", "file.exr"}, small)).exit_code == 0);
+  CHECK(read.get() == read_file(files.folder / "file.exr"));
 }
 
 TEST_CASE("statistics go to the standard output") {
