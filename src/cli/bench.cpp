@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "bench/report.h"
 #include "castray/error.h"
@@ -74,7 +76,16 @@ void check_flags(const BenchFlags& flags) {
   std::error_code failed;
   if (!flags.pictures.empty()) std::filesystem::create_directories(flags.pictures, failed);
   if (failed) throw InputError({flags.pictures}, "cannot be made a folder: " + failed.message());
-  for (const std::string& scene : flags.scenes) check_bench_scene(flags, scene);
+}
+
+/// All of them, so that what is wrong with any is told before the first takes its time.
+std::vector<Scene> checked_scenes(const BenchFlags& flags) {
+  std::vector<Scene> scenes;
+  for (const std::string& file : flags.scenes) {
+    scenes.push_back(load_scene(file));
+    check_bench_scene(flags, scenes.back());
+  }
+  return scenes;
 }
 
 void write_pictures(const std::filesystem::path& folder, const BenchScene& scene) {
@@ -88,12 +99,13 @@ void write_pictures(const std::filesystem::path& folder, const BenchScene& scene
 
 int bench(const BenchFlags& flags, const std::string& command) {
   check_flags(flags);
+  std::vector<Scene> scenes = checked_scenes(flags);
   BenchReport report{CASTRAY_VERSION, cpu_name(),
                      command,         flags.threads > 0 ? flags.threads : available_threads(),
                      flags.seeds,     {}};
   BenchMeter meter(flags.quiet);
-  for (const std::string& scene : flags.scenes) {
-    report.scenes.push_back(bench_scene(flags, scene, meter));
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    report.scenes.push_back(bench_scene(flags, std::exchange(scenes[i], {}), flags.scenes[i], meter));
     // After each scene, so that a long benchmark that is stopped leaves what it has.
     if (!flags.json.empty()) write_file(flags.json, bench_json(report));
     if (!flags.csv.empty()) write_file(flags.csv, bench_csv(report));

@@ -55,28 +55,8 @@ std::function<bool(std::string_view)> has_flag(const std::string& flags) {
 /// One scene's benchmark: what it needs, made from the flags.
 class SceneBench {
  public:
-  SceneBench(const BenchFlags& flags, const std::string& file, BenchMeter& meter)
-      : flags_(flags), file_(file), meter_(meter), scene_(load_scene(file)) {}
-
-  /// Throws what later renders would, before the first of them takes its time.
-  void check() const {
-    const auto check_one = [&](const std::string& flag, const std::string& flags) {
-      try {
-        RenderRequest request = configured_request(scene_, flags);
-        if (!flags_.size.empty()) parse_size(flags_.size, request.options.width, request.options.height);
-        prepare(scene_, request);
-      } catch (const InputError& error) {
-        const InputError told = placed_error(error, scene_, has_flag(flags));
-        const bool has_place = std::string_view(told.what()).starts_with(scene_.file.string());
-        throw has_place ? told : InputError(flag + ": " + told.what());
-      }
-    };
-    if (flags_.reference.empty()) check_one("--reference-flags", flags_.reference_flags);
-    for (const std::string& text : flags_.configurations) {
-      const Configuration configuration = split_configuration(text);
-      check_one("--config " + configuration.name, configuration.flags);
-    }
-  }
+  SceneBench(const BenchFlags& flags, const Scene& scene, const std::string& file, BenchMeter& meter)
+      : flags_(flags), file_(file), meter_(meter), scene_(scene) {}
 
   BenchScene run() {
     BenchScene result;
@@ -157,18 +137,33 @@ class SceneBench {
   const BenchFlags& flags_;
   const std::string& file_;
   BenchMeter& meter_;
-  Scene scene_;
+  const Scene& scene_;
 };
 
 }  // namespace
 
-void check_bench_scene(const BenchFlags& flags, const std::string& file) {
-  BenchMeter meter(true);
-  SceneBench(flags, file, meter).check();
+void check_bench_scene(const BenchFlags& flags, const Scene& scene) {
+  const auto check = [&](const std::string& flag, const std::string& rendering_flags) {
+    try {
+      RenderRequest request = configured_request(scene, rendering_flags);
+      if (!flags.size.empty()) parse_size(flags.size, request.options.width, request.options.height);
+      prepare(scene, request);
+    } catch (const InputError& error) {
+      const InputError told = placed_error(error, scene, has_flag(rendering_flags));
+      const bool has_place = std::string_view(told.what()).starts_with(scene.file.string());
+      throw has_place ? told : InputError(flag + ": " + told.what());
+    }
+  };
+  if (flags.reference.empty()) check("--reference-flags", flags.reference_flags);
+  for (const std::string& text : flags.configurations) {
+    const Configuration configuration = split_configuration(text);
+    check("--config " + configuration.name, configuration.flags);
+  }
 }
 
-BenchScene bench_scene(const BenchFlags& flags, const std::string& file, BenchMeter& meter) {
-  return SceneBench(flags, file, meter).run();
+BenchScene bench_scene(const BenchFlags& flags, const Scene& scene, const std::string& file,
+                       BenchMeter& meter) {
+  return SceneBench(flags, scene, file, meter).run();
 }
 
 }  // namespace castray::cli

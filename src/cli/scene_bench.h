@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bench/report.h"
+#include "castray/scene.h"
 #include "cli/bench_meter.h"
 
 namespace castray::cli {
@@ -27,10 +28,11 @@ struct BenchFlags {
   bool quiet = false;
 };
 
-/// Throws InputError where the scene cannot be read, or a configuration cannot render it.
-void check_bench_scene(const BenchFlags& flags, const std::string& file);
+/// Throws what later renders of the scene would, before the first of them takes its time.
+void check_bench_scene(const BenchFlags& flags, const Scene& scene);
 
-/// The benchmark of one scene file.
-BenchScene bench_scene(const BenchFlags& flags, const std::string& file, BenchMeter& meter);
+/// The benchmark of the scene of a file.
+BenchScene bench_scene(const BenchFlags& flags, const Scene& scene, const std::string& file,
+                       BenchMeter& meter);
 
 }  // namespace castray::cli
