@@ -147,6 +147,13 @@ bool has_stretched_lobe(const Material& m) {
   return has_key && m.anisotropy > 0 && !has_smooth_lobe(m);
 }
 
+AnisotropyConflict anisotropy_conflict(const Material& m) {
+  if (m.type == MaterialType::conductor) return AnisotropyConflict::none;
+  if (m.emits()) return AnisotropyConflict::emission;
+  const bool several_widths_over_base = m.has_alpha_map() && !m.is_bare_metal();
+  return several_widths_over_base ? AnisotropyConflict::roughness_image : AnisotropyConflict::none;
+}
+
 double lobe_aspect(const Material& m) { return has_stretched_lobe(m) ? std::sqrt(1 - m.anisotropy) : 1; }
 
 bool has_narrow_lobe(const Material& m) {

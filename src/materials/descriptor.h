@@ -86,6 +86,12 @@ bool has_smooth_lobe(const Material& material);
 /// Whether GGX lobes of this material are neither smooth nor round.
 bool has_stretched_lobe(const Material& material);
 
+/// What leaves no room for a direction of the lobe in a material that may have `anisotropy`. Of principled
+/// ones kernels keep either that direction or what is emitted, and how much of the light a stretched lobe
+/// leaves for the base below it is tabulated for one width: an image of the roughness needs bare metal.
+enum class AnisotropyConflict { none, emission, roughness_image };
+AnisotropyConflict anisotropy_conflict(const Material& material);
+
 /// Ggx::aspect of a material's lobes; 1 where it is smooth, whose direction nothing shows.
 double lobe_aspect(const Material& material);
 

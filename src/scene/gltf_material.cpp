@@ -7,6 +7,7 @@
 
 #include "core/range.h"
 #include "core/warp.h"
+#include "materials/descriptor.h"
 #include "materials/media.h"
 #include "materials/texture.h"
 #include "scene/gltf_value.h"
@@ -283,13 +284,14 @@ class GltfMaterialReader {
   }
 
   /// The lobe's widths: alpha across its direction, and by the square of the strength nearer to 1 along it.
+  /// So with an image of the roughness their ratio, which castray has for all of a surface, would vary.
   void set_anisotropy() {
     const tinygltf::Value* stretch = find_extension(m_.extensions, "KHR_materials_anisotropy");
     const double strength = unit(number_in(stretch, "anisotropyStrength", 0), "anisotropyStrength");
     if (strength == 0) return;
-    if (out_.emits() || out_.has_alpha_map()) {
-      warn(fmt::format("anisotropy is left out beside {}",
-                       out_.emits() ? "emission" : "an image of the roughness"));
+    const bool emits = anisotropy_conflict(out_) == AnisotropyConflict::emission;
+    if (emits || out_.has_alpha_map()) {
+      warn(fmt::format("anisotropy is left out beside {}", emits ? "emission" : "an image of the roughness"));
       return;
     }
     if (texture_use(stretch, "anisotropyTexture").used())

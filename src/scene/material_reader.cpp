@@ -86,19 +86,21 @@ class MaterialReader {
     if (material_.emits()) throw InputError(reader.find("ke")->key_place, "\"ke\"" + advice);
   }
 
-  /// What a stretched lobe leaves for a base is tabulated for one width; and kernels have no room for both
-  /// its direction and what is emitted.
   void check_stretched_layers(const ObjectReader& reader) const {
-    if (material_.type != MaterialType::principled || !(material_.anisotropy > 0)) return;
-    if (material_.emits())
-      throw InputError(reader.find("ke")->key_place,
-                       "\"ke\" cannot go with \"anisotropy\" of a principled material; give a part of the "
-                       "mesh a material of its own");
-    if (material_.has_alpha_map() && !material_.is_bare_metal())
-      throw InputError(
-          reader.find("anisotropy")->key_place,
-          "\"anisotropy\" of a principled material whose roughness is an image needs \"metallic\" "
-          "1, a number: there is no base below the lobe then");
+    if (!(material_.anisotropy > 0)) return;
+    switch (anisotropy_conflict(material_)) {
+      case AnisotropyConflict::none:
+        return;
+      case AnisotropyConflict::emission:
+        throw InputError(reader.find("ke")->key_place,
+                         "\"ke\" cannot go with \"anisotropy\" of a principled material; give a part of "
+                         "the mesh a material of its own");
+      case AnisotropyConflict::roughness_image:
+        throw InputError(
+            reader.find("anisotropy")->key_place,
+            "\"anisotropy\" of a principled material whose roughness is an image needs \"metallic\" "
+            "1, a number: there is no base below the lobe then");
+    }
   }
 
   void read_key(const MaterialKey& key, const JsonNode& node) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "materials/descriptor.h"
 #include "scene/mtl_texture.h"
 
 namespace castray {
@@ -202,10 +203,9 @@ class Meaning {
   void read_anisotropy() {
     const double amount = mtl_.anisotropy.value_or(0);
     if (amount == 0) return;
-    const bool is_metal = material_.type == MaterialType::conductor;
-    const bool is_layered = material_.type == MaterialType::principled && !material_.emits() &&
-                            (!material_.has_alpha_map() || material_.is_bare_metal());
-    if (!is_metal && !is_layered)
+    const bool has_key =
+        material_.type == MaterialType::conductor || material_.type == MaterialType::principled;
+    if (!has_key || anisotropy_conflict(material_) != AnisotropyConflict::none)
       return builder_.warnings.add(
           mtl_.place,
           "aniso is done for metals, and for what has Pm, Ps or Pc and neither Ke nor "
