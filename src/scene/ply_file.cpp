@@ -70,7 +70,13 @@ class PlyReader {
     if (header_.texture)
       warnings_.add({file_.string()},
                     "the image of 'comment TextureFile' is not read: give the mesh a material");
-    if (!mesh_.colors.empty()) decode_vertex_colors(mesh_, unit_of_color_);
+    if (!mesh_.colors.empty()) {
+      decode_vertex_colors(mesh_, unit_of_color_);
+    } else if (triangle_colors_.size() == mesh_.triangles.size()) {
+      mesh_.colors = std::move(face_colors_);
+      mesh_.triangle_colors = std::move(triangle_colors_);
+      decode_colors(mesh_, unit_of_face_color_);
+    }
     return std::move(obj_);
   }
 
@@ -90,6 +96,8 @@ class PlyReader {
                                    printable(element.name)));
     if (element.name == "vertex" && vertices) return read_vertices(element);
     const bool wanted = faces && element.name != "vertex";
+    find_roles(element, unit_of_face_color_);
+    has_face_colors_ = element.name == "face" && has({red, green, blue});
     for (std::uint64_t i = 0; i < element.count; ++i) wanted ? read_lists(element) : skip(element);
   }
 
@@ -101,28 +109,35 @@ class PlyReader {
   void read_vertices(const PlyElement& element) {
     if (!mesh_.positions.empty()) values_.fail("a second element 'vertex'");
     if (element.count >= Scene::no_index) values_.fail("more than 2^32 - 2 vertices; use fewer");
-    std::vector<std::size_t> role_of;
-    std::array<bool, roles> given{};
-    for (const PlyProperty& p : element.properties) {
-      const auto found = std::ranges::find(role_names, p.name, &std::pair<std::string_view, Role>::first);
-      const bool known = !p.count && found != std::end(role_names);
-      role_of.push_back(known ? std::size_t{found->second} : std::size_t{roles});
-      if (!known) continue;
-      given[found->second] = true;
-      if (found->second == red) unit_of_color_ = unit_of_color(p.type);
-    }
-    if (!given[x] || !given[y] || !given[z]) values_.fail("the element 'vertex' has no x, y and z");
-    has_normals_ = given[nx] && given[ny] && given[nz];
-    has_uvs_ = given[u] && given[v];
-    const bool has_colors = given[red] && given[green] && given[blue];
+    find_roles(element, unit_of_color_);
+    if (!has({x, y, z})) values_.fail("the element 'vertex' has no x, y and z");
+    has_normals_ = has({nx, ny, nz});
+    has_uvs_ = has({u, v});
+    const bool has_colors = has({red, green, blue});
     std::array<double, roles + 1> value{};  // the last takes what has no role
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (std::size_t k = 0; k < role_of.size(); ++k) read_value(element.properties[k], value[role_of[k]]);
+      for (std::size_t k = 0; k < role_of_.size(); ++k) read_value(element.properties[k], value[role_of_[k]]);
       mesh_.positions.push_back({value[x], value[y], value[z]});
       if (has_normals_) mesh_.normals.push_back(stored_normal({value[nx], value[ny], value[nz]}));
       if (has_uvs_) add_uv(value[u], value[v]);
       if (has_colors) mesh_.colors.push_back(Vec3f(Vec3d{value[red], value[green], value[blue]}));
     }
+  }
+
+  /// Sets the roles of an element's properties, and the value that stands for 1 in its colours.
+  void find_roles(const PlyElement& element, float& unit) {
+    role_of_.clear();
+    for (const PlyProperty& p : element.properties) {
+      const auto found = std::ranges::find(role_names, p.name, &std::pair<std::string_view, Role>::first);
+      const bool known = !p.count && found != std::end(role_names);
+      role_of_.push_back(known ? std::size_t{found->second} : std::size_t{roles});
+      if (role_of_.back() == red) unit = unit_of_color(p.type);
+    }
+  }
+
+  /// Whether the element at hand has all of these.
+  bool has(std::initializer_list<Role> wanted) const {
+    return std::ranges::all_of(wanted, [&](Role role) { return std::ranges::count(role_of_, role) > 0; });
   }
 
   void add_uv(double at_u, double at_v) {
@@ -147,9 +162,10 @@ class PlyReader {
   void read_lists(const PlyElement& element) {
     corners_.clear();
     texcoords_.clear();
-    double ignored = 0;
+    std::array<double, roles + 1> value{};
     const bool strips = element.name == "tristrips";
-    for (const PlyProperty& property : element.properties) {
+    for (std::size_t k = 0; k < role_of_.size(); ++k) {
+      const PlyProperty& property = element.properties[k];
       const bool has_corners = holds_faces(element);
       if (has_corners && property.count &&
           (property.name == "vertex_indices" || property.name == "vertex_index"))
@@ -157,11 +173,18 @@ class PlyReader {
       else if (has_corners && property.count && property.name == "texcoord")
         read_texcoords(property);
       else
-        read_value(property, ignored);
+        read_value(property, value[role_of_[k]]);
     }
     if (element.name != "face") return;
     add_texcoords();
     faces_.add(corners_, 0);
+    if (has_face_colors_) add_face_color({value[red], value[green], value[blue]});
+  }
+
+  void add_face_color(const Vec3d& color) {
+    const auto i = static_cast<std::uint32_t>(face_colors_.size());
+    face_colors_.push_back(Vec3f(color));
+    triangle_colors_.resize(mesh_.triangles.size(), {i, i, i});
   }
 
   void read_corners(const PlyProperty& property, bool strips) {
@@ -223,7 +246,11 @@ class PlyReader {
   Mesh& mesh_ = obj_.mesh;
   MeshFaces faces_{mesh_, [this] { return values_.place(); }};
   bool has_normals_ = false, has_uvs_ = false;
-  float unit_of_color_ = 1;
+  std::vector<std::size_t> role_of_;  // of the properties of the element at hand
+  float unit_of_color_ = 1, unit_of_face_color_ = 1;
+  bool has_face_colors_ = false;
+  std::vector<Vec3f> face_colors_;  // in place of those of vertices, where there are none
+  std::vector<Index3> triangle_colors_;
   std::vector<Corner> corners_;  // of the face or strip at hand
   std::vector<double> texcoords_;
 };

@@ -4,8 +4,11 @@
 
 namespace castray {
 
-/// Makes the colours of a mesh's vertices linear, one for each position, and gives them to its triangles. They
-/// are as programs store them: by the curve of sRGB, in 0 .. `unit`; what is outside is clamped.
+/// Makes a mesh's colours linear. They are as programs store them: by the curve of sRGB, in 0 .. `unit`; what
+/// is outside is clamped.
+void decode_colors(Mesh& mesh, float unit);
+
+/// The same of colours of vertices, one for each position, which it gives to the triangles.
 void decode_vertex_colors(Mesh& mesh, float unit);
 
 }  // namespace castray

@@ -116,6 +116,14 @@ TEST_CASE("PLY: ASCII and binary of both byte orders hold the same") {
     }
 }
 
+TEST_CASE("PLY: colours of faces count where vertices have none") {
+  const std::string colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string two = "element face 2\nproperty list uchar int vertex_index\n" + colors;
+  const Mesh mesh = read(triangle(two, "3 0 1 2 255 0 0\n3 2 1 0 0 255 255\n")).mesh;
+  CHECK(mesh.colors == std::vector<Vec3f>{{1, 0, 0}, {0, 1, 1}});
+  CHECK(mesh.triangle_colors == std::vector<Index3>{{0, 0, 0}, {1, 1, 1}});
+}
+
 TEST_CASE("PLY: faces may stand in front of their vertices") {
   const std::string points =
       "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
