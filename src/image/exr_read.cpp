@@ -6,6 +6,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfTileDescription.h>
 #include <algorithm>
@@ -196,6 +197,17 @@ bool has_layer(const std::string& name, std::string_view bytes, const std::strin
                              [&](const ExrLayer& layer) { return layer.name == layer_name; });
 }
 
+/// Whether the header says nothing else of what red, green, blue and white are.
+bool has_srgb_primaries(const Imf::Header& header) {
+  if (!Imf::hasChromaticities(header)) return true;
+  constexpr float tolerance = 0.002f;  // 0.3127 is also written as 0.313
+  const Imf::Chromaticities srgb, &given = Imf::chromaticities(header);
+  return given.red.equalWithAbsError(srgb.red, tolerance) &&
+         given.green.equalWithAbsError(srgb.green, tolerance) &&
+         given.blue.equalWithAbsError(srgb.blue, tolerance) &&
+         given.white.equalWithAbsError(srgb.white, tolerance);
+}
+
 Decoded read_from(const std::string& name, std::string_view bytes, const std::string& layer_name) {
   check_exr_headers(name, bytes);
   BytesIn in(name, bytes);
@@ -215,6 +227,7 @@ Decoded read_from(const std::string& name, std::string_view bytes, const std::st
   decoded.metadata = texts_of(header);
   if (layer.is_plain) decoded.noise = read_noise(part, layer);
   decoded.left_out = others(layers, layer);
+  if (!has_srgb_primaries(header)) decoded.left_out.push_back("that its primaries are not those of sRGB");
   Imath::Box2i all = header.displayWindow();
   all.extendBy(header.dataWindow());
   if (all != header.displayWindow()) decoded.left_out.push_back("pixels outside its display window");

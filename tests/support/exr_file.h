@@ -6,6 +6,7 @@
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
+#include <ImfStandardAttributes.h>
 
 #include <filesystem>
 #include <map>
@@ -17,6 +18,7 @@ struct TestPart {
   std::map<std::string, float> channels;
   Imath::Box2i display{{0, 0}, {3, 2}}, data = display;
   std::string name = "";
+  bool wide_gamut = false;  ///< says that its primaries are those of ACES
 };
 
 inline void write_exr_parts(const std::filesystem::path& file, const std::vector<TestPart>& parts) {
@@ -25,6 +27,8 @@ inline void write_exr_parts(const std::filesystem::path& file, const std::vector
     Imf::Header header(part.display, part.data);
     header.setType(Imf::SCANLINEIMAGE);
     if (!part.name.empty()) header.setName(part.name);
+    if (part.wide_gamut)
+      Imf::addChromaticities(header, {{0.7347f, 0.2653f}, {0, 1}, {0.0001f, -0.077f}, {0.3217f, 0.3377f}});
     for (const auto& [name, value] : part.channels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
     headers.push_back(header);
   }

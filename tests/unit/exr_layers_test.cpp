@@ -56,6 +56,9 @@ TEST_CASE("EXR: which of several layers is read without --layer, and what is sai
   const ImageFile beside = read_parts({{joined(colours("", 1), {{"Z", 9}, {"diffuse.R", 3}})}});
   CHECK(beside.image.at(0, 0) == Vec3f(1, 2, 3));
   CHECK(beside.left_out == std::vector<std::string>{"layer Z (Z)", "layer diffuse (R)"});
+  TestPart wide{colours("", 1)};
+  wide.wide_gamut = true;
+  CHECK(read_parts({wide}).left_out == std::vector<std::string>{"that its primaries are not those of sRGB"});
   const auto blender = joined(colours("ViewLayer.Combined.", 1), {{"ViewLayer.Depth.Z", 9}});
   CHECK(colour_of(blender) == Vec3f(1, 2, 3));
   CHECK(colour_of(blender, "ViewLayer.Depth") == Vec3f(9));
