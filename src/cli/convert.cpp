@@ -49,10 +49,11 @@ struct Convert {
       throw InputError("--layer: only .exr files have layers; leave it out");
     if (is_film_format(input) && std::any_of(outputs.begin(), outputs.end(), is_film_format)) {
       const Film film = read_film(input);
-      write_film(outputs, film, display);
+      write_film(outputs, film, display, metadata_of(film));
       return tell_outputs(common);
     }
-    const ImageFile file = read_image(input, layer);
+    ImageFile file = read_image(input, layer);
+    if (is_film_format(input)) add_writer(file.metadata);
     if (!common.quiet) warn_of_left_out(file);
     const Image radiance = decoded(file, display.tone);
     for (const auto& output : outputs) {

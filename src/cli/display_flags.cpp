@@ -61,6 +61,22 @@ void check_distinct(const std::vector<std::filesystem::path>& files) {
   }
 }
 
+void add_writer(Metadata& metadata) {
+  metadata["Software"] = "castray " CASTRAY_VERSION;
+  metadata["castray:version"] = CASTRAY_VERSION;
+}
+
+Metadata metadata_of(const Film& film) {
+  Metadata metadata = describe(film);
+  add_writer(metadata);
+  std::string& options = metadata["castray:options"];
+  const bool all_samples =
+      film.samples.size() == 1 && film.samples.front().first == 0 && film.missing_samples() == 0;
+  if (all_samples && options.find("--target-error") == options.npos)
+    options += fmt::format(" --spp {}", film.samples.front().count);
+  return metadata;
+}
+
 void tell_written(const std::vector<std::filesystem::path>& files) {
   for (const auto& file : files) fmt::print(stderr, "wrote {}\n", file.string());
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "castray/film.h"
 #include "castray/image.h"
 #include "cli/arguments.h"
 
@@ -40,6 +41,13 @@ void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files
 void check_distinct(const std::vector<std::filesystem::path>& files);
 
 /// Says on stderr which files were written.
+/// Adds that this program wrote the file.
+void add_writer(Metadata& metadata);
+
+/// What PNG and EXR files of a film hold: what it says of itself, who wrote them, and, where it has all
+/// samples from the first on, their number among the flags that render it again.
+Metadata metadata_of(const Film& film);
+
 void tell_written(const std::vector<std::filesystem::path>& files);
 
 /// Says on stderr how many pixels of an image for display are not finite, and what is shown in their place.

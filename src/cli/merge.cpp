@@ -95,7 +95,7 @@ struct Merge {
                             part = {};  // its memory is needed
                             return part = merged.rows(y0, y1);
                           }};
-    write_film_in_bands(outputs, film, display, describe);
+    write_film_in_bands(outputs, film, display, metadata_of);
     if (common.verbose) tell_written(outputs);
     return 0;
   }
@@ -111,7 +111,7 @@ struct Merge {
       if (!common.quiet) meter.tell(done, inputs.size());
     });
     if (!merged.missing.empty()) tell_missing(merged.missing);
-    write_film(outputs, merged.film, display, describe(merged.film));
+    write_film(outputs, merged.film, display, metadata_of(merged.film));
     if (common.verbose) tell_written(outputs);
     return 0;
   }

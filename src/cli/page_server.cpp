@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "castray/error.h"
+#include "cli/display_flags.h"
 #include "cli/scene_report.h"
 #include "cli/serve_page.h"
 #include "cli/temporary_folder.h"
@@ -229,8 +230,7 @@ Metadata PageServer::metadata(const LiveFrame& frame) const {
   Metadata metadata = frame.metadata;
   metadata.erase("castray:hash");  // of the scene's own view
   metadata.erase("castray:view");
-  metadata["Software"] = "castray " CASTRAY_VERSION;
-  metadata["castray:version"] = CASTRAY_VERSION;
+  add_writer(metadata);
   metadata["castray:options"] += fmt::format(" {} --spp {:.0f}{}", view_flags(served_.scene, frame.camera),
                                              std::ceil(frame.spp), served_.flags);
   if (const auto& part = frame.refined)

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "cli/black_film.h"
+#include "cli/display_flags.h"
 #include "cli/scene_report.h"
 #include "cli/shell_word.h"
 #include "plan/job.h"
@@ -202,8 +203,7 @@ std::string RenderReport::json() const {
 
 Metadata RenderReport::metadata(const Film& film) const {
   Metadata metadata = describe(film);
-  metadata["Software"] = "castray " CASTRAY_VERSION;
-  metadata["castray:version"] = CASTRAY_VERSION;
+  add_writer(metadata);
   metadata["castray:scene"] = scene.name;
   metadata["castray:options"] += repeating_flags(metadata["castray:options"], film);
   if (tells_time) metadata["castray:seconds"] = fmt::format("{:.3f}", result.stats.render_seconds);

@@ -30,7 +30,7 @@ RunResult merge(const TemporaryFolder& folder, Words more) {
 
 TEST_CASE("the parts of a render merge to its bytes, in any order") {
   const TemporaryFolder folder;
-  REQUIRE(render(folder, {"--spp", "10", "-o", "whole.film", "-o", "whole.pfm"}).exit_code == 0);
+  REQUIRE(render(folder, {"--spp", "10", "-o", "whole.film", "-o", "whole.png"}).exit_code == 0);
   for (const char* part : {"0/3", "1/3", "2/3"})
     REQUIRE(render(folder, {"--spp", "10", "--part", part, "-o", "p{part}.film", "--stats", "p{part}.json"})
                 .exit_code == 0);
@@ -41,10 +41,10 @@ TEST_CASE("the parts of a render merge to its bytes, in any order") {
   for (const Words& order :
        {Words{"p0.film", "p1.film", "p2.film"}, Words{"p2.film", "p0.film", "p1.film"}}) {
     Words words = order;
-    words.insert(words.end(), {"-o", "m.film", "-o", "m.pfm"});
+    words.insert(words.end(), {"-o", "m.film", "-o", "m.png"});
     REQUIRE(merge(folder, words).exit_code == 0);
     CHECK(read_file(folder / "m.film") == read_file(folder / "whole.film"));
-    CHECK(read_file(folder / "m.pfm") == read_file(folder / "whole.pfm"));
+    CHECK(read_file(folder / "m.png") == read_file(folder / "whole.png"));
   }
   // in a tree: what is merged in part knows what it is a part of
   REQUIRE(merge(folder, {"p2.film", "p1.film", "--partial", "-o", "m12.film"}).exit_code == 0);
