@@ -38,10 +38,31 @@ void spread(const Vec3d& w, Add add) {
       add((face * steps + a.at) * steps + b.at, a.weight * b.weight);
 }
 
+/// Of rows of weights of bins: for each row guide_bins + 1 numbers, from 0 to 1.
+std::vector<float> cumulative_of(const std::vector<double>& weights) {
+  std::vector<float> cumulative;
+  for (std::size_t row = 0; row < weights.size(); row += guide_bins) {
+    double sum = 0, before = 0;
+    for (std::size_t bin = 0; bin < guide_bins; ++bin) sum += weights[row + bin];
+    cumulative.push_back(0);
+    for (std::size_t bin = 0; bin < guide_bins; ++bin) {
+      before += weights[row + bin] / sum;
+      cumulative.push_back(static_cast<float>(std::min(before, 1.0)));
+    }
+    cumulative.back() = 1;
+  }
+  return cumulative;
+}
+
 }  // namespace
 
 EmissionGuide::EmissionGuide(const std::vector<UsefulEmission>& samples) {
   if (samples.empty()) return;
+  lay_grid(samples);
+  cumulative_ = cumulative_of(bin_weights(samples));
+}
+
+void EmissionGuide::lay_grid(const std::vector<UsefulEmission>& samples) {
   Vec3f upper = lower_ = samples.front().p;
   for (const UsefulEmission& sample : samples)
     for (int k = 0; k < 3; ++k) {
@@ -56,6 +77,9 @@ EmissionGuide::EmissionGuide(const std::vector<UsefulEmission>& samples) {
     count *= along;
   }
   row_of_cell_.assign(count, no_guide);
+}
+
+std::vector<double> EmissionGuide::bin_weights(const std::vector<UsefulEmission>& samples) {
   std::vector<double> weights;
   const auto row_of = [&](std::size_t cell) {
     std::uint32_t& row = row_of_cell_[cell];
@@ -78,16 +102,7 @@ EmissionGuide::EmissionGuide(const std::vector<UsefulEmission>& samples) {
           spread(Vec3d(sample.w), [&](std::size_t bin, double part) { weights[row + bin] += weight * part; });
         }
   }
-  for (std::size_t row = 0; row < weights.size(); row += guide_bins) {
-    double sum = 0, before = 0;
-    for (std::size_t bin = 0; bin < guide_bins; ++bin) sum += weights[row + bin];
-    cumulative_.push_back(0);
-    for (std::size_t bin = 0; bin < guide_bins; ++bin) {
-      before += weights[row + bin] / sum;
-      cumulative_.push_back(static_cast<float>(std::min(before, 1.0)));
-    }
-    cumulative_.back() = 1;
-  }
+  return weights;
 }
 
 EmissionGuideTable EmissionGuide::table() const {

@@ -28,6 +28,10 @@ class EmissionGuide {
   EmissionGuideTable table() const;
 
  private:
+  void lay_grid(const std::vector<UsefulEmission>& samples);
+  /// A row of guide_bins weights of directions for each cell that has any; says which in row_of_cell_.
+  std::vector<double> bin_weights(const std::vector<UsefulEmission>& samples);
+
   Vec3f lower_;
   float cell_ = 0;  ///< side of a cell
   std::array<std::uint32_t, 3> cells_{};

@@ -40,14 +40,8 @@ float stretch_of(const Material& m) {
   return static_cast<float>((1 / r - r) / 2);
 }
 
-}  // namespace
-
-KernelMaterials::KernelMaterials(const Scene& scene) {
-  for (const Material& m : scene.materials) add(scene, m);
-}
-
-void KernelMaterials::add(const Scene& scene, const Material& m) {
-  const MaterialDescriptor& descriptor = descriptor_of(m.type);
+/// What no image and no table changes; of material `index`.
+KernelMaterial constants_of(const Scene& scene, const Material& m, std::size_t index) {
   KernelMaterial k{};
   k.coverage = static_cast<float>(m.coverage);
   k.ior = static_cast<float>(m.thin ? -m.ior : m.ior);
@@ -57,19 +51,62 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
   k.turn[0] = static_cast<float>(std::cos(turn));
   k.turn[1] = static_cast<float>(std::sin(turn));
   put(k.absorption, m.absorption * scene.unit);
-  if (m.bounds_body()) k.medium = static_cast<std::uint32_t>(materials.size()) + 1;
-  k.back = static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : materials.size()) *
-           material_floats;
+  if (m.bounds_body()) k.medium = static_cast<std::uint32_t>(index) + 1;
+  k.back =
+      static_cast<std::uint32_t>(m.has_back() ? static_cast<std::size_t>(m.back) : index) * material_floats;
   k.glass = static_cast<std::uint32_t>(m.has_glass() ? m.glass : 0) * material_floats;
   k.glass_share = static_cast<float>(m.glass_share());
   k.type = static_cast<std::uint32_t>(m.type);
   k.traits = traits_of(m);
-  auto values = SurfaceValues<double>(m).value;
+  k.clearcoat_f0 = static_cast<float>(reflectance_of_coat(m.clearcoat_ior));
+  return k;
+}
+
+/// The values that kernels read of a vertex.
+void put_values(const Material& m, const MaterialValues& values, KernelMaterial& k) {
+  std::transform(values.begin(), values.begin() + vertex_floats, k.value,
+                 [](double v) { return static_cast<float>(v); });
+  k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
+  k.value[slot_coat] = pack(values[slot_clearcoat], values[slot_clearcoat_roughness]);
+  if (!(k.traits & trait_stretched)) return;
+  const int slot = m.type == MaterialType::conductor ? slot_stretch : slot_layered_stretch;
+  k.stretch = stretch_of(m);
+  k.value[slot] = k.stretch;
+  k.value[slot + 1] = 0;
+}
+
+}  // namespace
+
+KernelMaterials::KernelMaterials(const Scene& scene) {
+  for (const Material& m : scene.materials) add(scene, m);
+}
+
+void KernelMaterials::add(const Scene& scene, const Material& m) {
+  KernelMaterial k = constants_of(scene, m, materials.size());
+  MaterialValues values = SurfaceValues<double>(m).value;
   const double least_alpha = (k.traits & trait_specular) ? 0 : Ggx<double>::smooth_below;
   values[slot_alpha] = (k.traits & trait_specular) ? 0 : std::max(values[slot_alpha], least_alpha);
 
   KernelDetail detail{};
   std::ranges::transform(values, detail.value, [](double v) { return static_cast<float>(v); });
+  look_up_lobe(m, k, values);
+  look_up_coat(m, k, values);
+  put_values(m, values, k);
+
+  detail.type = m.type;
+  detail.least_alpha =
+      static_cast<float>(has_lobe_rows(m) ? LobeAlbedoRows::alpha_of(LobeAlbedoRows::first) : least_alpha);
+  detail.albedo = k.albedo;
+  detail.albedo_rows = k.albedo_rows;
+  detail.clearcoat_rows = k.clearcoat_rows;
+  detail.multiple_scattering = has_lobe_table(m) && m.multiple_scattering;
+  if (m.has_index()) put(detail.mean_fresnel, mean_fresnel(m));
+  add_maps(scene, m, detail, k);
+  materials.push_back(k);
+}
+
+void KernelMaterials::look_up_lobe(const Material& m, KernelMaterial& k, MaterialValues& values) {
+  const MaterialDescriptor& descriptor = descriptor_of(m.type);
   if (has_lobe_rows(m)) {
     const int row = LobeAlbedoRows::row_of(values[slot_alpha]);
     k.albedo = albedo_rows();
@@ -82,7 +119,9 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     k.albedo = albedo_offset(widths, lobe);
     descriptor.finish(m, lobe, values.data());
   }
-  k.clearcoat_f0 = static_cast<float>(reflectance_of_coat(m.clearcoat_ior));
+}
+
+void KernelMaterials::look_up_coat(const Material& m, KernelMaterial& k, MaterialValues& values) {
   if (has_clearcoat_rows(m)) {
     k.clearcoat_albedo = albedo_rows();
     k.clearcoat_rows = LobeAlbedoRows::steps;
@@ -92,35 +131,19 @@ void KernelMaterials::add(const Scene& scene, const Material& m) {
     const double alpha = clearcoat_alpha(m.clearcoat_roughness);
     k.clearcoat_albedo = albedo_offset({alpha, 1}, lobes_.of(alpha));
   }
-  detail.albedo = k.albedo;
-  detail.albedo_rows = k.albedo_rows;
-  detail.clearcoat_rows = k.clearcoat_rows;
-  detail.multiple_scattering = has_lobe_table(m) && m.multiple_scattering;
-  if (m.has_index()) put(detail.mean_fresnel, mean_fresnel(m));
-  std::transform(values.begin(), values.begin() + vertex_floats, k.value,
-                 [](double v) { return static_cast<float>(v); });
-  k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
-  k.value[slot_coat] = pack(values[slot_clearcoat], values[slot_clearcoat_roughness]);
-  if (k.traits & trait_stretched) {
-    const int slot = m.type == MaterialType::conductor ? slot_stretch : slot_layered_stretch;
-    k.stretch = stretch_of(m);
-    k.value[slot] = k.stretch;
-    k.value[slot + 1] = 0;
-  }
+}
 
+void KernelMaterials::add_maps(const Scene& scene, const Material& m, KernelDetail& detail,
+                               KernelMaterial& k) {
   detail.normal = single_map(scene, m.map(SurfaceParameter::normal), 1);
   detail.bump = single_map(scene, m.map(SurfaceParameter::bump), static_cast<float>(1 / scene.unit));
-  if (std::vector<KernelMap> maps = maps_of(scene, m); !maps.empty() || detail.normal || detail.bump) {
-    maps_.push_back(std::move(maps));
-    detail.maps = maps_.back().data();
-    detail.count = static_cast<std::uint32_t>(maps_.back().size());
-    detail.type = m.type;
-    detail.least_alpha =
-        static_cast<float>(has_lobe_rows(m) ? LobeAlbedoRows::alpha_of(LobeAlbedoRows::first) : least_alpha);
-    details.push_back(detail);
-    k.detail = static_cast<std::uint32_t>(details.size());
-  }
-  materials.push_back(k);
+  std::vector<KernelMap> maps = maps_of(scene, m);
+  if (maps.empty() && !detail.normal && !detail.bump) return;
+  maps_.push_back(std::move(maps));
+  detail.maps = maps_.back().data();
+  detail.count = static_cast<std::uint32_t>(maps_.back().size());
+  details.push_back(detail);
+  k.detail = static_cast<std::uint32_t>(details.size());
 }
 
 MaterialTables KernelMaterials::tables() const {

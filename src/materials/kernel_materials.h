@@ -13,6 +13,9 @@
 
 namespace castray {
 
+/// A material's values, by ParameterSlot.
+using MaterialValues = std::array<double, parameter_floats>;
+
 /// A scene's materials as the kernels read them. Points into itself and into the scene.
 class KernelMaterials {
  public:
@@ -28,6 +31,10 @@ class KernelMaterials {
 
  private:
   void add(const Scene& scene, const Material& m);
+  /// The table of the lobe's albedo, and what the model makes of the values with it.
+  void look_up_lobe(const Material& m, KernelMaterial& k, MaterialValues& values);
+  void look_up_coat(const Material& m, KernelMaterial& k, MaterialValues& values);
+  void add_maps(const Scene& scene, const Material& m, KernelDetail& detail, KernelMaterial& k);
   std::uint32_t albedo_offset(const LobeWidths& widths, const LobeAlbedo& lobe);
   std::vector<KernelMap> maps_of(const Scene& scene, const Material& m);
   KernelMap map_of(const Scene& scene, const TextureMap& map);

@@ -74,6 +74,49 @@ std::uint64_t view_hash(const Camera& camera) {
   return hash.value();
 }
 
+void add_light(Hash& hash, const DeltaLight& light) {
+  hash.add(light.kind);
+  for (const Vec3d& v : {light.position, light.direction, light.intensity}) hash.add(v);
+  hash.add(light.cos_outer), hash.add(light.cos_inner);
+}
+
+void add_triangles(Hash& hash, const Scene& scene) {
+  hash.add(scene.positions);
+  hash.add(scene.triangles);
+  hash.add(scene.triangle_material);
+  hash.add(scene.normals);
+  hash.add(scene.triangle_normals);
+  hash.add(scene.uvs);
+  hash.add(scene.triangle_uvs);
+  hash.add(scene.colors);
+  hash.add(scene.triangle_colors);
+}
+
+void add_instance(Hash& hash, const SceneInstance& instance, const SharedMesh& mesh) {
+  hash.add(mesh.first), hash.add(mesh.count);
+  for (const Vec3f& row : instance.rows) hash.add(Vec3d(row));
+  hash.add(Vec3d(instance.translation));
+}
+
+void add_material(Hash& hash, const Material& m) {
+  const Material usual;
+  hash.add(m.type);
+  for (const MaterialKey& key : descriptor_of(m.type).keys) {
+    if (key.optional_in_hash && value_of(key, m) == value_of(key, usual)) continue;
+    hash.add(value_of(key, m));
+    if (key.parameter) add_map(hash, m.map(*key.parameter));
+  }
+  hash.add(m.correlated_masking);
+  if (m.has_back()) hash.add(m.back);
+  if (m.emits_backwards) hash.add(m.emits_backwards);
+  if (m.has_index()) hash.add(m.eta), hash.add(m.k);
+}
+
+void add_texture(Hash& hash, const Texture& t) {
+  hash.add(t.width), hash.add(t.channels), hash.add(t.color_space);
+  hash.add(t.bytes), hash.add(t.floats);
+}
+
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -86,43 +129,12 @@ std::uint64_t scene_hash(const Scene& scene) {
     hash.add(image.texture), hash.add(image.scale), hash.add(image.rotation);
   add_optics(hash, camera);
   hash.add(scene.unit);
-  for (const DeltaLight& light : scene.delta_lights) {
-    hash.add(light.kind);
-    for (const Vec3d& v : {light.position, light.direction, light.intensity}) hash.add(v);
-    hash.add(light.cos_outer), hash.add(light.cos_inner);
-  }
-  hash.add(scene.positions);
-  hash.add(scene.triangles);
-  hash.add(scene.triangle_material);
-  hash.add(scene.normals);
-  hash.add(scene.triangle_normals);
-  hash.add(scene.uvs);
-  hash.add(scene.triangle_uvs);
-  hash.add(scene.colors);
-  hash.add(scene.triangle_colors);
-  for (const SceneInstance& instance : scene.instances) {
-    const SharedMesh& mesh = scene.shared_meshes[instance.mesh];
-    hash.add(mesh.first), hash.add(mesh.count);
-    for (const Vec3f& row : instance.rows) hash.add(Vec3d(row));
-    hash.add(Vec3d(instance.translation));
-  }
-  const Material usual;
-  for (const Material& m : scene.materials) {
-    hash.add(m.type);
-    for (const MaterialKey& key : descriptor_of(m.type).keys) {
-      if (key.optional_in_hash && value_of(key, m) == value_of(key, usual)) continue;
-      hash.add(value_of(key, m));
-      if (key.parameter) add_map(hash, m.map(*key.parameter));
-    }
-    hash.add(m.correlated_masking);
-    if (m.has_back()) hash.add(m.back);
-    if (m.emits_backwards) hash.add(m.emits_backwards);
-    if (m.has_index()) hash.add(m.eta), hash.add(m.k);
-  }
-  for (const Texture& t : scene.textures) {
-    hash.add(t.width), hash.add(t.channels), hash.add(t.color_space);
-    hash.add(t.bytes), hash.add(t.floats);
-  }
+  for (const DeltaLight& light : scene.delta_lights) add_light(hash, light);
+  add_triangles(hash, scene);
+  for (const SceneInstance& instance : scene.instances)
+    add_instance(hash, instance, scene.shared_meshes[instance.mesh]);
+  for (const Material& material : scene.materials) add_material(hash, material);
+  for (const Texture& texture : scene.textures) add_texture(hash, texture);
   return hash.value();
 }
 
