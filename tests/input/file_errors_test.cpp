@@ -225,7 +225,8 @@ const std::vector<Case> cases = {
     {"stacks too small for a render",
      nothing,
      {"render", "s.json", "-q", "-o", "x.png"},
-     "stacks of 16 KiB are too small; set `ulimit -s 512`, and OMP_STACKSIZE to 512K if it is set",
+     // how many depends on the OpenMP runtime
+     " KiB are too small; set `ulimit -s 512`, and OMP_STACKSIZE to 512K if it is set",
      {.variables = {{"OMP_STACKSIZE", "16k"}}}},
     {"a target in a file", nothing, {"render", "s.json", "-q", "-o", "s.json/x.png"}, "s.json/x.png: "},
 };
