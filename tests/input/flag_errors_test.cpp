@@ -158,7 +158,7 @@ TEST_CASE("a fault in the flags gives one line, exit code 2, and no file") {
     for (const std::string& word : faulty.words) shown += " " + word;
     INFO(shown);
     const RunResult outcome = run_castray(faulty.words, folder.path());
-    CHECK(outcome.err == "castray: error: " + faulty.message + "\n");
+    CHECK(outcome.but_for_reading() == "castray: error: " + faulty.message + "\n");
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.out == "");
   }
@@ -173,7 +173,7 @@ TEST_CASE("a scene's own flags are refused with their place") {
                                      << " },\n  \"meshes\": [ { \"obj\": \"t.obj\" } ]\n}\n";
     const RunResult outcome = run_castray({"render", "s.json"}, folder.path());
     CHECK(outcome.exit_code == 2);
-    return outcome.err;
+    return outcome.but_for_reading();
   };
   CHECK(message(R"("spq": 1)") ==
         "castray: error: s.json:2:15: unknown key 'spq' in \"render\"; did you mean 'spp'?\n");

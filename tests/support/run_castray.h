@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,6 +23,15 @@ struct RunResult {
   int exit_code = -1;  ///< 128 + signal where one ended it
   std::string out, err;
   long peak_kilobytes = 0;
+
+  /// `err` without the lines that tell of reading, which are there if it takes more than a second.
+  std::string but_for_reading() const {
+    std::istringstream lines(err);
+    std::string rest;
+    for (std::string line; std::getline(lines, line);)
+      if (!line.starts_with("castray: reading ")) rest += line + '\n';
+    return rest;
+  }
 
   std::size_t error_lines() const {
     return static_cast<std::size_t>(std::count(err.begin(), err.end(), '\n'));
