@@ -2,7 +2,7 @@
 import math
 import random
 
-from shapes import PARTS, Mesh, box, curve, lathe, quad, save_png, turned
+from shapes import PARTS, Mesh, ball, box, curve, lathe, quad, save_png, turned
 
 LOW, HIGH = (-0.5, 0.42), (2.2, 2.5)  # of the window; along the wall and up
 
@@ -49,7 +49,7 @@ def curtains():
 
 
 def crown():
-    """Leaves of a tree or a bush around the origin, within a radius of 1; lumps of them hide what is within."""
+    """Leaves of a tree or a bush around the origin, within a radius of 1, and oranges for it; lumps of leaves hide what is within."""
     chance, leaves = random.Random(83), Mesh()
 
     def direction():
@@ -64,6 +64,11 @@ def crown():
         size = chance.uniform(0.04, 0.075)
         quad(leaves, [[m + size * (a * p + b * q) for m, p, q in zip(middle, u, v)] for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
     leaves.save("crown")
+    fruit, small = Mesh(), ball(8)
+    for k in range(28):
+        x, y, z = (0.97 * c for c in direction())
+        fruit.join(small, lambda px, py, pz: (x + 0.065 * px, y + 0.065 * py, z + 0.065 * pz))
+    fruit.save("oranges")
 
 
 def garden():
