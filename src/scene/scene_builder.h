@@ -63,7 +63,7 @@ class SceneBuilder {
   void place(std::size_t object, const Transform& transform, std::optional<std::uint16_t> material = {});
 
   /// Fills in geometry, center, unit, lights, warnings and the camera, without the triangles that rounding
-  /// makes degenerate. Throws InputError where no triangle is left.
+  /// makes degenerate. Throws InputError where no triangle is left. In finish_scene.cpp.
   Scene finish();
 
  private:
