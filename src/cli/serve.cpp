@@ -93,7 +93,7 @@ struct Serve {
 
 Run add_serve(Arguments& arguments, const CommonFlags& common) {
   const auto serve = std::make_shared<Serve>();
-  arguments.add_positional("SCENE", serve->file, "scene .json, or .obj").required();
+  arguments.add_positional("SCENE", serve->file, "scene .json, .gltf, .glb, .obj or .ply").required();
   arguments.add("--port", serve->port, "N", "of 127.0.0.1 [any that is free]");
   for (const RenderFlag& flag : render_flags())
     if (std::find(std::begin(not_served), std::end(not_served), flag.name) == std::end(not_served))
