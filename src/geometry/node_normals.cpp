@@ -32,6 +32,7 @@ NormalBall around(const NormalBall* balls, int count) {
   }
   for (int i = 0; i < count; ++i)
     all.radius = std::max(all.radius, length(balls[i].center - all.center) + balls[i].radius);
+  all.radius = std::min(all.radius, 1 + length(all.center));  // farther away there is no unit vector
   return all;
 }
 
