@@ -126,7 +126,13 @@ struct Material {
   bool has_emission_map() const {
     return emits() && (map(SurfaceParameter::ke).used() || map(SurfaceParameter::coverage).used());
   }
-  bool may_have_holes() const { return coverage < 1 || map(SurfaceParameter::coverage).used(); }
+  /// Whether rays may pass as if nothing were there.
+  bool may_have_holes() const {
+    return coverage < 1 || map(SurfaceParameter::coverage).used() || is_window();
+  }
+  /// Whether light passes unbent, so that a ray may take no notice of it. What shines by itself does not: the
+  /// share of it that is there would not depend on the place alone.
+  bool is_window() const { return type == MaterialType::dielectric && thin && !emits(); }
   /// Whether its surface bounds a body that light goes into.
   bool bounds_body() const { return type == MaterialType::dielectric && !thin; }
   bool absorbs() const { return bounds_body() && max_component(absorption) > 0; }

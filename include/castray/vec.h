@@ -58,6 +58,11 @@ Vec3<T> normalize(const Vec3<T>& a) {
 }
 
 template <class T>
+constexpr T min_component(const Vec3<T>& a) {
+  const T m = a.x < a.y ? a.x : a.y;
+  return m < a.z ? m : a.z;
+}
+template <class T>
 constexpr T max_component(const Vec3<T>& a) {
   const T m = a.x > a.y ? a.x : a.y;
   return m > a.z ? m : a.z;

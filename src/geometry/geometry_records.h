@@ -31,12 +31,19 @@ struct FlatList {
   float camera_slack;  ///< list_slack for rays from the camera
 };
 
+/// Where a ray meets a triangle, and its direction in scene space, of any length.
+struct PartialHit {
+  uint32_t triangle, instance;  ///< instance: of an InstanceTree; no_hit for other geometry
+  float b1, b2;
+  float direction[3];
+};
+
 /// Triangles that are only partly there. A point of one is there in some worlds and not in others, with the
 /// probability of its coverage; different points independently of each other. In each world the scene is an
-/// ordinary one with holes.
+/// ordinary one with holes. A window's coverage depends on the ray's direction: it is what does not pass.
 struct PartialTriangles {
   const uint32_t* triangles;  ///< a bit for each, the lowest first; null: all are wholly there
-  float (*coverage)(const void* self, uint32_t triangle, float b1, float b2);
+  float (*coverage)(const void* self, const PartialHit& hit);
   const void* self;
   bool met_once;  ///< a ray meets each of them once: the tree has none twice
 };

@@ -58,13 +58,15 @@ CASTRAY_INLINE void find_occluded(const InstanceTree& tree, const Counts& counts
 
 void instances_closest(const InstanceTree& tree, const PartlyThere* there, const RayBatch& rays) {
   if (!there) return find_closest(tree, AllThere{}, rays);
-  if (rays.presence.key) return find_closest(tree, ThereForRays{there->partial, rays.presence}, rays);
-  find_closest(tree, *there, rays);
+  const PartialHits hits{there->partial, RayDirections::of(rays)};
+  if (rays.presence.key) return find_closest(tree, ThereForRays{hits, rays.presence}, rays);
+  find_closest(tree, ThereInWorld{hits, there->world}, rays);
 }
 
 void instances_occluded(const InstanceTree& tree, const PartlyThere* there, const ShadowBatch& rays) {
   if (!there) return find_occluded(tree, AllThere{}, rays);
-  if (!rays.kept) return find_occluded(tree, *there, rays);
+  const PartialHits hits{there->partial, RayDirections::of(rays)};
+  if (!rays.kept) return find_occluded(tree, ThereInWorld{hits, there->world}, rays);
   find_occluded(tree, begin_thinning(there->partial, rays), rays);
 }
 

@@ -23,23 +23,53 @@ CASTRAY_INLINE bool is_partial(const PartialTriangles& partial, uint32_t triangl
   return partial.triangles[triangle / 32] >> (triangle % 32) & 1;
 }
 
-/// 1 where the triangle is not partial.
-CASTRAY_INLINE float coverage_at(const PartialTriangles& partial, uint32_t triangle, float b1, float b2) {
-  return is_partial(partial, triangle) ? partial.coverage(partial.self, triangle, b1, b2) : 1.f;
-}
+/// Directions of the rays of a batch.
+struct RayDirections {
+  const float *x, *y, *z;
+  template <class Batch>
+  CASTRAY_INLINE static RayDirections of(const Batch& rays) {
+    return {rays.dx, rays.dy, rays.dz};
+  }
+  CASTRAY_INLINE RayDirections from(uint32_t ray) const { return {x + ray, y + ray, z + ray}; }
+};
 
-/// Those on what of the triangles is there in a world.
+/// What a ray may meet of partial triangles.
+struct PartialHits {
+  const PartialTriangles& partial;
+  RayDirections directions;
+  uint32_t instance = no_hit;
+
+  CASTRAY_INLINE PartialHits from(uint32_t ray) const { return {partial, directions.from(ray), instance}; }
+  CASTRAY_INLINE PartialHits in(uint32_t at) const { return {partial, directions, at}; }
+
+  /// 1 where the triangle is not partial.
+  CASTRAY_INLINE float coverage(uint32_t ray, uint32_t triangle, float b1, float b2) const {
+    if (!is_partial(partial, triangle)) return 1;
+    const RayDirections& d = directions;
+    return partial.coverage(partial.self, {triangle, instance, b1, b2, {d.x[ray], d.y[ray], d.z[ray]}});
+  }
+};
+
+/// What of the triangles is there in a world.
 struct PartlyThere {
   const PartialTriangles& partial;
   uint32_t world;
 
   /// Whether shadow rays tell what partial triangles leave of their light (ShadowBatch::kept).
   CASTRAY_INLINE bool thins() const { return partial.triangles && partial.met_once; }
+};
 
-  CASTRAY_INLINE PartlyThere from(uint32_t /*ray*/) const { return *this; }
-  CASTRAY_INLINE PartlyThere in(uint32_t instance) const { return {partial, hash_combine(world, instance)}; }
-  CASTRAY_INLINE bool operator()(uint32_t /*ray*/, uint32_t triangle, float b1, float b2) const {
-    const float coverage = coverage_at(partial, triangle, b1, b2);
+/// Hits on that.
+struct ThereInWorld {
+  PartialHits hits;
+  uint32_t world;
+
+  CASTRAY_INLINE ThereInWorld from(uint32_t ray) const { return {hits.from(ray), world}; }
+  CASTRAY_INLINE ThereInWorld in(uint32_t instance) const {
+    return {hits.in(instance), hash_combine(world, instance)};
+  }
+  CASTRAY_INLINE bool operator()(uint32_t ray, uint32_t triangle, float b1, float b2) const {
+    const float coverage = hits.coverage(ray, triangle, b1, b2);
     return coverage >= 1 || (coverage > 0 && presence_number(world, triangle, b1, b2) < coverage);
   }
 };
@@ -48,18 +78,18 @@ struct PartlyThere {
 /// there as often as it should be, almost exactly. Different triangles, and the path beyond, have independent
 /// numbers.
 struct ThereForRays {
-  const PartialTriangles& partial;
+  PartialHits hits;
   PresenceNumbers numbers;
   uint32_t block = 0x9e5e4ceu;
 
   CASTRAY_INLINE ThereForRays from(uint32_t ray) const {
-    return {partial, {numbers.key + ray, numbers.index + ray, numbers.sobol}, block};
+    return {hits.from(ray), {numbers.key + ray, numbers.index + ray, numbers.sobol}, block};
   }
   CASTRAY_INLINE ThereForRays in(uint32_t instance) const {
-    return {partial, numbers, hash_combine(block, instance)};
+    return {hits.in(instance), numbers, hash_combine(block, instance)};
   }
   CASTRAY_INLINE bool operator()(uint32_t ray, uint32_t triangle, float b1, float b2) const {
-    const float coverage = coverage_at(partial, triangle, b1, b2);
+    const float coverage = hits.coverage(ray, triangle, b1, b2);
     return coverage >= 1 || (coverage > 0 && number(ray, triangle) < coverage);
   }
 
@@ -73,13 +103,13 @@ struct ThereForRays {
 /// Those where nothing is left of a ray's light. `kept` starts as 1, and loses at each crossing the share
 /// that is there.
 struct Thinning {
-  const PartialTriangles& partial;
+  PartialHits hits;
   float* kept;
 
-  CASTRAY_INLINE Thinning from(uint32_t ray) const { return {partial, kept + ray}; }
-  CASTRAY_INLINE Thinning in(uint32_t /*instance*/) const { return *this; }
+  CASTRAY_INLINE Thinning from(uint32_t ray) const { return {hits.from(ray), kept + ray}; }
+  CASTRAY_INLINE Thinning in(uint32_t instance) const { return {hits.in(instance), kept}; }
   CASTRAY_INLINE bool operator()(uint32_t ray, uint32_t triangle, float b1, float b2) const {
-    kept[ray] *= 1 - coverage_at(partial, triangle, b1, b2);
+    kept[ray] *= 1 - hits.coverage(ray, triangle, b1, b2);
     return !(kept[ray] > 0);
   }
 };
@@ -87,7 +117,7 @@ struct Thinning {
 /// That of rays which have met nothing.
 CASTRAY_INLINE Thinning begin_thinning(const PartialTriangles& partial, const ShadowBatch& rays) {
   for (uint32_t i = 0; i < rays.count; ++i) rays.kept[i] = 1;
-  return {partial, rays.kept};
+  return {{partial, RayDirections::of(rays)}, rays.kept};
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -61,14 +61,16 @@ CASTRAY_INLINE void find_occluded(const WideBvhView& bvh, const Counts& counts, 
 void bvh_closest(const WideBvhView& bvh, const RayBatch& rays) { find_closest(bvh, AllThere{}, rays); }
 
 void bvh_closest(const WideBvhView& bvh, const PartlyThere& there, const RayBatch& rays) {
-  if (rays.presence.key) return find_closest(bvh, ThereForRays{there.partial, rays.presence}, rays);
-  find_closest(bvh, there, rays);
+  const PartialHits hits{there.partial, RayDirections::of(rays)};
+  if (rays.presence.key) return find_closest(bvh, ThereForRays{hits, rays.presence}, rays);
+  find_closest(bvh, ThereInWorld{hits, there.world}, rays);
 }
 
 void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays) { find_occluded(bvh, AllThere{}, rays); }
 
 void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const ShadowBatch& rays) {
-  if (!rays.kept) return find_occluded(bvh, there, rays);
+  const PartialHits hits{there.partial, RayDirections::of(rays)};
+  if (!rays.kept) return find_occluded(bvh, ThereInWorld{hits, there.world}, rays);
   find_occluded(bvh, begin_thinning(there.partial, rays), rays);
 }
 

@@ -14,6 +14,10 @@ namespace castray {
 /// points independently of each other. What a ray meets first is then a function of the ray and the world,
 /// whatever the order of its tests. As no path meets a point twice, the mean over worlds is light that is
 /// thinned by 1 - coverage at each crossing.
+///
+/// The share of a window that is there is what of the light does not go straight on (Material::is_window), by
+/// the angle between the ray and the normal; which is that of the vertices where there are such, without the
+/// bends of normal and bump maps.
 class Coverage {
  public:
   /// The scene must outlive this.
@@ -26,17 +30,14 @@ class Coverage {
     return !partial_.empty() && (partial_[triangle / 32] >> (triangle % 32) & 1u);
   }
 
-  /// Whether the point at barycentrics b1, b2 is there.
+  /// The share of the surface that is there, where a ray of this direction, of any length, meets it.
   template <class T>
-  bool is_there(std::uint32_t world, std::uint32_t triangle, T b1, T b2) const;
+  T share_there(const Hit<T>& hit, const Vec3<T>& direction) const;
 
-  /// The share of the surface that is there at that point.
-  float share_there(std::uint32_t triangle, float b1, float b2) const;
-
-  /// Which hits count in a path's world, where each instance has a world of its own. The filter must not
-  /// outlive this.
+  /// Which hits of a ray count in a path's world, where each instance has a world of its own. The filter must
+  /// not outlive this.
   template <class T>
-  HitFilter<T> there_in(std::uint32_t world) const;
+  HitFilter<T> there_in(std::uint32_t world, const Vec3<T>& direction) const;
 
  private:
   const Scene& scene_;

@@ -28,27 +28,38 @@ Vec3<T> refract(const Vec3<T>& w, const Vec3<T>& h, T eta) {
   return h * (cos_i / eta - cos_t) - w / eta;
 }
 
+/// What a pane reflects of the light that arrives at cosine `cos_i` >= 0: between its two surfaces, each of
+/// which reflects f, light goes to and fro, so it is f + (1 - f)^2 f / (1 - f^2).
+template <class T>
+T pane_reflectance(T cos_i, T ior) {
+  const T f = fresnel_dielectric(cos_i, ior);
+  return 2 * f / (1 + f);
+}
+
 const MaterialDescriptor& dielectric_descriptor();
 
 /// Glass: reflection and refraction by the exact Fresnel equations, smooth or through GGX facets (Walter et
 /// al. 2007). What passes is tinted at each crossing. The normal points out of the medium of index `ior`.
 /// Radiance scales by (n_o / n_i)^2 where it crosses the surface.
 ///
-/// A thin wall is a pane of two smooth surfaces, between which light goes to and fro: it reflects
-/// f + (1 - f)^2 f / (1 - f^2) = 2 f / (1 + f), and what passes goes straight on, tinted once.
+/// A thin wall is a pane of two smooth surfaces: what it does not reflect goes straight on, tinted once. It
+/// is a window where rays pass as if nothing were there with the probability of what all colours keep
+/// (Coverage): such a ray needs no vertex, and shadow rays find what is behind. Its BSDF is then that of the
+/// rest: of the mirror, and of what is left of a colour that passes better than another.
 template <class T>
 struct Dielectric {
   T ior;
   Ggx<T> ggx;
   Vec3<T> transmittance{1};
-  bool thin = false;
+  bool thin = false, window = false;
 
   static const MaterialDescriptor& descriptor() { return dielectric_descriptor(); }
   static Dielectric make(const SurfaceValues<double>& values, const Material& m, const LobeTables&) {
     return {static_cast<T>(m.ior),
             {static_cast<T>(values.at(slot_alpha)), m.correlated_masking},
             Vec3<T>(values.color(slot_kd)),
-            m.thin};
+            m.thin,
+            m.is_window()};
   }
 
   Vec3<T> evaluate(const Vec3<T>& wo_, const Vec3<T>& wi_) const {
@@ -101,12 +112,19 @@ struct Dielectric {
   bool smooth() const { return ggx.smooth() || ior == 1 || thin; }
 
   BsdfSample<T> sample_thin(const Vec3<T>& wo, T u_lobe) const {
-    const T one_side = fresnel_dielectric(std::abs(wo.z), ior);
-    const T reflectance = 2 * one_side / (1 + one_side);
-    const bool reflected = u_lobe < reflectance;
-    return {.weight = reflected ? Vec3<T>(1) : transmittance,
+    const T reflectance = pane_reflectance(std::abs(wo.z), ior);
+    const T as_if_nothing = window ? min_component(transmittance) : T(0);
+    const T most = window ? max_component(transmittance) - as_if_nothing : T(1);
+    const T there = reflectance + (1 - reflectance) * (1 - as_if_nothing),
+            goes_on = reflectance + (1 - reflectance) * most;
+    if (!(goes_on > 0)) return {};
+    const T chance = reflectance / goes_on;
+    const bool reflected = u_lobe < chance;
+    const Vec3<T> tint =
+        reflected ? Vec3<T>(1) : (transmittance - Vec3<T>(as_if_nothing)) * (most > 0 ? 1 / most : T(0));
+    return {.weight = tint * (goes_on / there),
             .wi = reflected ? Vec3<T>(-wo.x, -wo.y, wo.z) : -wo,
-            .pdf = reflected ? reflectance : 1 - reflectance,
+            .pdf = reflected ? chance : 1 - chance,
             .specular = true};
   }
 

@@ -4,13 +4,38 @@
 
 namespace castray::CASTRAY_ISA {
 
+/// How the vertices of a window go on.
+struct WindowLobes {
+  Float chance;  ///< of reflection
+  Vec tint;      ///< of what goes straight on
+  Float weight;  ///< of both
+};
+
+/// Of panes that reflect so much, by transmittance.
+CASTRAY_INLINE WindowLobes window_lobes(Float reflectance, Vec transmittance) {
+  const Vec& t = transmittance;
+  const Float as_if_nothing = min(t.x, min(t.y, t.z)), most = max_component(t) - as_if_nothing;
+  const Float passed = Float(1.f) - reflectance;
+  const Float goes_on = reflectance + passed * most;
+  const Mask some = goes_on > Float(0.f), tinted = most > Float(0.f);
+  const Vec rest = t - Vec{as_if_nothing, as_if_nothing, as_if_nothing};
+  return {select(some, reflectance / goes_on, Float(1.f)),
+          rest * select(tinted, Float(1.f) / most, Float(0.f)),
+          select(some, goes_on / (reflectance + passed * (Float(1.f) - as_if_nothing)), Float(0.f))};
+}
+
 /// Glass whose transmittance is kd; see dielectric.h.
 struct Dielectric : ModelDefaults {
   static constexpr MaterialType type = MaterialType::dielectric;
   static constexpr bool transmits = true;
 
-  CASTRAY_INLINE static Vec tint(const Bsdf& b, Mask reflected) {
-    return select(reflected, Vec{Float(1.f), Float(1.f), Float(1.f)}, b.kd);
+  CASTRAY_INLINE static Vec tint(const Vec& passed, Mask reflected) {
+    return select(reflected, Vec{Float(1.f), Float(1.f), Float(1.f)}, passed);
+  }
+
+  CASTRAY_INLINE static Mask is_window(const Bsdf& b) {
+    const Uint traits = gather(b.materials, &KernelMaterial::traits, b.record);
+    return ~((traits & uint32_t{trait_window}) == Uint(0u));
   }
 
   CASTRAY_INLINE static BsdfValue evaluate(const Bsdf& b, Vec wo, Vec wi) {
@@ -31,7 +56,7 @@ struct Dielectric : ModelDefaults {
     const Float pdf = select(reflection, f * visible * Float(0.5f),
                              (Float(1.f) - f) * Float(2.f) * wo_h * visible * abs(wi_h) / denominator);
     const Float kept = select(possible, value, Float(0.f));
-    return {tint(b, reflection) * kept, select(possible, pdf, Float(0.f))};
+    return {tint(b.kd, reflection) * kept, select(possible, pdf, Float(0.f))};
   }
 
   CASTRAY_INLINE static BsdfSample sample(const Bsdf& b, Vec wo, Float choice, Float u, Float v) {
@@ -41,7 +66,16 @@ struct Dielectric : ModelDefaults {
     const Float wo_h = dot(wo, h), eta = abs(b.eta);
     const Float of_surface = fresnel_dielectric(wo_h, eta);
     const Mask thin = b.eta < Float(0.f);
-    const Float f = select(thin, Float(2.f) * of_surface / (Float(1.f) + of_surface), of_surface);
+    Float f = select(thin, Float(2.f) * of_surface / (Float(1.f) + of_surface), of_surface);
+    Vec straight = b.kd;
+    Float shared(1.f);
+    if (any(thin)) {
+      const Mask window = thin & is_window(b);
+      const WindowLobes lobes = window_lobes(f, b.kd);
+      f = select(window, lobes.chance, f);
+      straight = select(window, lobes.tint, straight);
+      shared = select(window, lobes.weight, shared);
+    }
     const Mask reflected = choice < f;
     const Vec passed = select(thin, -wo, refract(wo, h, eta));
     const Vec wi = normalize(select(reflected, reflect(wo, h), passed));
@@ -50,9 +84,9 @@ struct Dielectric : ModelDefaults {
     const Vec above{wi.x, wi.y, abs(wi.z)};
     const Float masking = ggx_shadowing_over_cos(b.alpha, wo, above) * above.z * Float(2.f) *
                           (wo.z + ggx_stretched_length(b.alpha, wo));
-    const Float weight = select(possible, select(smooth, Float(1.f), masking) / eta2, Float(0.f));
+    const Float weight = select(possible, select(smooth, shared, masking) / eta2, Float(0.f));
     const Float pdf = select(smooth, select(reflected, f, Float(1.f) - f), evaluate(b, wo, wi).pdf);
-    return {wi, tint(b, reflected) * weight, pdf, smooth, eta2};
+    return {wi, tint(straight, reflected) * weight, pdf, smooth, eta2};
   }
 };
 

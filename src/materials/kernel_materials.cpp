@@ -203,7 +203,8 @@ std::vector<KernelMap> KernelMaterials::maps_of(const Scene& scene, const Materi
   }
   for (const MaterialKey& key : descriptor_of(m.type).keys) {
     if (!key.slot || !key.parameter || !m.map(*key.parameter).used()) continue;
-    const TextureMap& map = m.map(*key.parameter);
+    TextureMap map = m.map(*key.parameter);
+    if (m.is_window()) map.filter = TextureFilter::none;
     KernelMap k = map_of(scene, map);
     k.slot = *key.slot;
     k.count = floats_of(key);

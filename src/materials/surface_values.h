@@ -108,7 +108,7 @@ SurfaceValues<T> surface_values(const Scene& scene, const Material& m, const Tri
     if (!key.slot || !key.parameter || !m.map(*key.parameter).used()) continue;
     const TextureMap& map = m.map(*key.parameter);
     values.multiply(key, scene.textures[static_cast<std::size_t>(map.texture)], map, (*uv)[0], (*uv)[1],
-                    seen);
+                    m.is_window() ? std::nullopt : seen);
   }
   values.keep_alpha_rough(m);
   return values;

@@ -43,9 +43,9 @@ FirstHit CameraHits::at(int x, int y, std::uint64_t sample) const {
       camera_sample(camera, x, y, width_, height_, options_.jitter, draw(PathBlocks::camera),
                     [&] { return draw(PathBlocks::lens); });
   const std::uint32_t world = path_world(key, sample);
-  const Path path{key, sample, world, coverage_.there_in<float>(world)};
+  const Path path{key, sample, world};
   const Ray<float> ray{Vec3f(from_camera.origin), Vec3f(normalize(from_camera.direction))};
-  const Hit<float> hit = bvh_.closest(ray, path.there);
+  const Hit<float> hit = closest(ray, path);
   if (!hit.found()) return {};
   const Surface<float> x0 = surfaces_.at(hit, ray, world);
   FirstHit first{hit.triangle, appearance(x0, hit), scene_.to_world(Vec3d(x0.p)), 0, {}};
@@ -54,6 +54,10 @@ FirstHit CameraHits::at(int x, int y, std::uint64_t sample) const {
                                                                          : dot(from_eye, camera.forward));
   if (follows_) first.behind_mirrors = behind_mirrors(x0, hit, path);
   return first;
+}
+
+Hit<float> CameraHits::closest(const Ray<float>& ray, const Path& path) const {
+  return bvh_.closest(ray, coverage_.there_in(path.world, ray.direction));
 }
 
 Vec3f CameraHits::albedo(const Surface<float>& x, const Hit<float>& hit) const {
@@ -79,7 +83,7 @@ Appearance CameraHits::behind_mirrors(Surface<float> x, Hit<float> hit, const Pa
     tint *= sample.weight * sample.eta2;
     const Vec3f wi = x.frame.to_world(sample.wi);
     const Ray<float> ray{segments_.origin(x, wi), wi};
-    hit = bvh_.closest(ray, path.there);
+    hit = closest(ray, path);
     if (!hit.found()) return {};
     x = surfaces_.at(hit, ray, path.world);
   }

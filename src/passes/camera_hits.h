@@ -45,8 +45,8 @@ class CameraHits {
     std::uint32_t key;
     std::uint64_t sample;
     std::uint32_t world;
-    HitFilter<float> there;
   };
+  Hit<float> closest(const Ray<float>& ray, const Path& path) const;
   Vec3f albedo(const Surface<float>& x, const Hit<float>& hit) const;
   Appearance appearance(const Surface<float>& x, const Hit<float>& hit) const;
   Appearance behind_mirrors(Surface<float> x, Hit<float> hit, const Path& path) const;

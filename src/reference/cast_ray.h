@@ -62,7 +62,6 @@ class CastRay {
   Vec3<T> sample_pixel(int x, int y, int width, int height, std::uint64_t sample, std::uint64_t& rays) const {
     Path path{.key = pixel_key(x, y, options_.seed), .sample = sample};
     path.world = path_world(path.key, sample);
-    path.there = coverage_.there_in<T>(path.world);
     const std::array<float, 4> u = draw(path, PathBlocks::camera);
     path.light_u = {T(u[2]), T(u[3])};
     const auto lens = [&] { return draw(path, PathBlocks::lens); };
@@ -84,7 +83,6 @@ class CastRay {
     Point2<T> light_u{};    ///< for the light point of this vertex
     std::uint64_t rays = 0;
     std::uint32_t world = 0;              ///< what it meets is decided in
-    HitFilter<T> there{};                 ///< which hits count
     Media media{};                        ///< that the path's last segment is in
     std::optional<PixelView<T>> pixel{};  ///< of the camera's ray, where maps filter
   };
@@ -105,7 +103,7 @@ class CastRay {
   /// L: radiance that arrives at the ray's origin against its direction (of unit length).
   Vec3<T> cast_ray(const Ray<T>& ray, Path& path, const Arrival& arrival) const {
     ++path.rays;
-    const Hit<T> hit = accel_.closest(ray, path.there);
+    const Hit<T> hit = accel_.closest(ray, there(path, ray.direction));
     if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless);
     Surface<T> x = surfaces_.at(hit, ray, path.world, path.vertex == 0 ? path.pixel : std::nullopt);
     segments_.place(x, hit, ray);
@@ -131,6 +129,11 @@ class CastRay {
   }
 
   static constexpr T endless = std::numeric_limits<T>::infinity();
+
+  /// Which hits of a ray count.
+  HitFilter<T> there(const Path& path, const Vec3<T>& direction) const {
+    return coverage_.there_in(path.world, direction);
+  }
 
   Vec3<T> kept(const Media& media, T distance) const { return media.transmittance(scene_, distance); }
 
@@ -179,7 +182,7 @@ class CastRay {
     if (!(max_component(radiance) > 0)) return {};
     if (mis_) radiance *= light_share(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
     ++path.rays;
-    if (!segments_.visible(accel_, x, y, path.there)) return {};
+    if (!segments_.visible(accel_, x, y, there(path, segment))) return {};
     return radiance * kept(beyond(x, wi, path.media), std::sqrt(distance2));
   }
 
@@ -194,7 +197,7 @@ class CastRay {
     if (!(max_component(radiance) > 0)) return {};
     if (mis_) radiance *= light_share(sample.pdf, x.bsdf.pdf(x.wo, local));
     ++path.rays;
-    if (accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, path.there)) return {};
+    if (accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, there(path, sample.w))) return {};
     return radiance * kept(beyond(x, sample.w, path.media), endless);
   }
 
@@ -209,7 +212,7 @@ class CastRay {
       if (!(max_component(radiance) > 0)) continue;
       ++path.rays;
       const Ray<T> ray{segments_.origin(x, sample.wi), sample.wi, sample.distance};
-      if (accel_.occluded(ray, path.there)) continue;
+      if (accel_.occluded(ray, there(path, sample.wi))) continue;
       sum += radiance * kept(beyond(x, sample.wi, path.media), sample.distance);
     }
     return sum;

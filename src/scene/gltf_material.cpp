@@ -234,27 +234,23 @@ class GltfMaterialReader {
 
   void set_solid_glass(const tinygltf::Value* volume) {
     set_absorption(volume);
+    set_tinted_glass();
+  }
+
+  void set_thin_wall() {
+    if (out_.alpha > 0) warn("a thin wall of glass is smooth, and does not blur what is behind it");
+    set_tinted_glass();
+    out_.thin = true;
+    out_.alpha = 0;
+    out_.map(Parameter::roughness) = {};
+    out_.vertex_colors = false;
+  }
+
+  void set_tinted_glass() {
     out_.type = MaterialType::dielectric;
     out_.ior = ior();
     out_.transmittance = out_.kd;
     out_.map(Parameter::transmittance) = std::exchange(out_.map(Parameter::kd), {});
-  }
-
-  /// A pane: what its two sides do not reflect passes unbent, as through a surface that covers only a share
-  /// of itself. Between the sides light goes to and fro: they reflect r + r (1 - r)^2 / (1 - r^2) of it.
-  void set_thin_wall() {
-    const double reflected = 2 * f0() / (1 + f0());
-    const double passed = (1 - reflected) * luminance(out_.kd);
-    const auto [low, high] = std::minmax({out_.kd.x, out_.kd.y, out_.kd.z});
-    if (low != high || out_.map(Parameter::kd).used())
-      warn("a thin wall of glass has no colour, only its luminance");
-    if (out_.alpha > 0) warn("a thin wall of glass does not blur what is behind it");
-    const double there = 1 - passed;
-    out_.type = MaterialType::conductor;
-    out_.map(Parameter::kd) = {};
-    out_.reflectance = Vec3d(there > 0 ? reflected / there : 0);
-    out_.coverage *= there;
-    out_.vertex_colors = false;
   }
 
   /// Reflectance straight on.

@@ -43,8 +43,10 @@ bool has_emission_images(const Scene& scene) {
 }
 
 PartialTriangles partial_triangles(const Coverage& coverage, BuildQuality build) {
-  const auto share_there = [](const void* self, std::uint32_t triangle, float b1, float b2) {
-    return static_cast<const Coverage*>(self)->share_there(triangle, b1, b2);
+  const auto share_there = [](const void* self, const PartialHit& hit) {
+    const Vec3f direction(hit.direction[0], hit.direction[1], hit.direction[2]);
+    return static_cast<const Coverage*>(self)->share_there(
+        Hit<float>{0, hit.triangle, hit.b1, hit.b2, hit.instance}, direction);
   };
   return {coverage.partial_triangles(), share_there, &coverage, build != BuildQuality::best};
 }

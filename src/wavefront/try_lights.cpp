@@ -20,6 +20,9 @@ constexpr std::uint32_t vertices = 4, tests = 8;
 
 constexpr std::uint32_t key = 0x11647;
 
+/// Panes between a place and a light, at most; behind more, the light is taken for hidden.
+constexpr int most_windows = 4;
+
 /// Where rays start, off the surface: coarser than in an image, which no trial is part of.
 constexpr float offset = 0x1p-14f;
 
@@ -104,8 +107,36 @@ class Batch {
     std::vector<std::uint8_t> hidden(segments.size());
     RayArrays(segments).occluded([&](const ShadowBatch& b) { occluded_segments(kernel_, data_, b); }, 0,
                                  segments.size(), hidden.data());
+    if (has_windows_) see_through_windows(std::move(segments), hidden);
     for (std::size_t i = 0; i < asked.size(); ++i)
       if (!hidden[i]) trials[asked[i].first].seen |= 1u << asked[i].second;
+  }
+
+  /// Segments on which only windows lie are not hidden.
+  void see_through_windows(Rays segments, std::vector<std::uint8_t>& hidden) const {
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < hidden.size(); ++i)
+      if (hidden[i]) left.push_back(i);
+    for (int windows = 0; windows <= most_windows && !left.empty(); ++windows) {
+      Rays rays;
+      for (const std::size_t i : left) rays.push_back(segments[i]);
+      std::vector<Hit<float>> hits(rays.size());
+      RayArrays(rays).closest([&](const RayBatch& b) { closest_hits(kernel_, data_, false, b); }, 0,
+                              rays.size(), hits.data());
+      std::vector<std::size_t> behind;
+      for (std::size_t k = 0; k < left.size(); ++k) {
+        Ray<float>& segment = segments[left[k]];
+        if (!hits[k].found())
+          hidden[left[k]] = 0;
+        else if (scene_.material_of(hits[k].triangle).is_window()) {
+          const float past = hits[k].t + offset / length(segment.direction);
+          segment.origin = segment.origin + segment.direction * past;
+          segment.t_max -= past;
+          behind.push_back(left[k]);
+        }
+      }
+      left = std::move(behind);
+    }
   }
 
   /// Some of those that may light the place, from a random one on.
@@ -167,6 +198,7 @@ class Batch {
   const KernelApi& kernel_;
   const KernelSceneData& data_;
   const std::vector<double>& power_shares_;
+  bool has_windows_ = std::ranges::any_of(scene_.materials, &Material::is_window);
   std::vector<std::uint32_t> first_of_;
   std::vector<std::uint32_t> names_;  ///< of the paths of the present rays
 };

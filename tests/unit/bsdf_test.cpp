@@ -338,6 +338,7 @@ TEST_CASE("a lobe that is not round is wide along x", "[bsdf]") {
 TEST_CASE("a pane reflects what its two surfaces do, and the rest goes straight on", "[bsdf]") {
   Material m = dielectric(0);
   m.thin = true, m.transmittance = {1, 0.5, 0.25};
+  m.ke = Vec3d(1);  // no window, through which rays pass without a vertex
   const MaterialTable<double> table({m});
   for (const double theta : {0.1, 1.0, 1.5, 2.0, 3.0}) {  // on either side
     const Vec3d wo = direction(theta, 0.7);
@@ -352,6 +353,32 @@ TEST_CASE("a pane reflects what its two surfaces do, and the rest goes straight 
     CHECK(mirrored.weight.y == 1);
     CHECK((straight.eta2 == 1 && straight.specular && mirrored.specular));
   }
+}
+
+TEST_CASE("what vertices of a window send on, and what passes as if nothing were there, is a pane's",
+          "[bsdf]") {
+  for (const Vec3d& transmittance : {Vec3d(1), Vec3d(0.5), Vec3d(1, 0.5, 0.25), Vec3d(0, 0.5, 1)})
+    for (const double ior : {1.0, 1.5}) {
+      Material m = dielectric(0);
+      m.thin = true, m.transmittance = transmittance, m.ior = ior;
+      const MaterialTable<double> table({m});
+      for (const double theta : {0.1, 1.0, 1.5, 2.0, 3.0}) {
+        const Vec3d wo = direction(theta, 0.7);
+        const double reflected = pane_reflectance(std::abs(wo.z), ior);
+        const double passed = (1 - reflected) * min_component(transmittance);
+        Vec3d mirrored, straight(passed);
+        for (const double u : {0.0, 1 - 1e-9}) {
+          const BsdfSample<double> s = table[0].sample(wo, u, {0.3, 0.4});
+          if (!s.valid()) continue;
+          const bool ahead = length(s.wi + wo) < 1e-9;
+          (ahead ? straight : mirrored) += s.weight * (s.pdf * (1 - passed));
+          if (s.pdf == 1) break;  // both numbers choose the same
+        }
+        CAPTURE(transmittance.x, transmittance.z, ior, theta);
+        CHECK(length(mirrored - Vec3d(reflected)) < 1e-9);
+        CHECK(length(straight - transmittance * (1 - reflected)) < 1e-9);
+      }
+    }
 }
 
 TEST_CASE("a metal's reflectance follows Fresnel's equations at each angle", "[bsdf]") {

@@ -47,6 +47,8 @@ std::vector<Material> all_materials() {
   list.back().ior = 1;
   list.push_back(material(MaterialType::dielectric, 0));
   list.back().thin = true;
+  list.push_back(list.back());
+  list.back().ke = Vec3d(1);  // no window
   for (const double alpha : {0.0, 0.05, 0.3, 1.0})
     for (const bool index : {false, true}) {
       list.push_back(material(MaterialType::conductor, alpha));
