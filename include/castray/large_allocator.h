@@ -1,9 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <new>
+#include <type_traits>
 #include <utility>
-#include <vector>
 
 namespace castray {
 
@@ -15,28 +15,50 @@ void free_large(void* memory, std::size_t bytes);
 /// What a block of so many bytes takes of memory.
 std::size_t bytes_in_large_pages(std::size_t bytes);
 
-/// For vectors of numbers of every pixel, whose size is set once: what `resize` adds is zero as memory is
-/// when it is new, and is not written a second time.
+/// Numbers of every pixel, zero at first, as memory is when it is new. A std::vector would go over all of
+/// them once more to make and to end each.
 template <class T>
-struct LargeAllocator {
-  using value_type = T;
+class LargeVector {
+  static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
-  LargeAllocator() = default;
-  template <class U>
-  LargeAllocator(const LargeAllocator<U>&) {}
-
-  T* allocate(std::size_t count) { return static_cast<T*>(allocate_large(count * sizeof(T))); }
-  void deallocate(T* memory, std::size_t count) { free_large(memory, count * sizeof(T)); }
-  template <class U>
-  void construct(U*) {}  // zero already
-  template <class U, class... Arguments>
-  void construct(U* to, Arguments&&... arguments) {
-    ::new (static_cast<void*>(to)) U(std::forward<Arguments>(arguments)...);
+ public:
+  LargeVector() = default;
+  explicit LargeVector(std::size_t size)
+      : values_(size > 0 ? static_cast<T*>(allocate_large(size * sizeof(T))) : nullptr), size_(size) {}
+  LargeVector(const LargeVector& other) : LargeVector(other.size_) {
+    std::copy_n(other.values_, size_, values_);
   }
-  friend bool operator==(const LargeAllocator&, const LargeAllocator&) { return true; }
-};
+  LargeVector(LargeVector&& other) noexcept { swap(other); }
+  LargeVector& operator=(LargeVector other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~LargeVector() {
+    if (values_) free_large(values_, size_ * sizeof(T));
+  }
 
-template <class T>
-using LargeVector = std::vector<T, LargeAllocator<T>>;
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* data() { return values_; }
+  const T* data() const { return values_; }
+  T* begin() { return values_; }
+  const T* begin() const { return values_; }
+  T* end() { return values_ + size_; }
+  const T* end() const { return values_ + size_; }
+  T& operator[](std::size_t i) { return values_[i]; }
+  const T& operator[](std::size_t i) const { return values_[i]; }
+  friend bool operator==(const LargeVector& a, const LargeVector& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
+
+ private:
+  void swap(LargeVector& other) noexcept {
+    std::swap(values_, other.values_);
+    std::swap(size_, other.size_);
+  }
+
+  T* values_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 }  // namespace castray

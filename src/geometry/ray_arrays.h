@@ -12,6 +12,10 @@ namespace castray {
 class RayArrays {
  public:
   RayArrays() = default;
+  /// So many, to be set.
+  explicit RayArrays(std::size_t count) {
+    for (auto& numbers : number_) numbers.resize(count);
+  }
   explicit RayArrays(const std::vector<Ray<float>>& rays) {
     for (const Ray<float>& ray : rays) add(ray);
   }
@@ -22,6 +26,14 @@ class RayArrays {
       number_[3 + i].push_back(ray.direction[i]);
     }
     number_[6].push_back(ray.t_max);
+  }
+
+  void set(std::size_t at, const Ray<float>& ray) {
+    for (int i = 0; i < 3; ++i) {
+      number_[i][at] = ray.origin[i];
+      number_[3 + i][at] = ray.direction[i];
+    }
+    number_[6][at] = ray.t_max;
   }
 
   std::size_t size() const { return number_[6].size(); }

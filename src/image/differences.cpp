@@ -151,6 +151,13 @@ struct RowOfTerm {
     }
   }
 
+  /// Has the memory of pixels x0 <= x < x1 come to the cache, to be written soon.
+  void expect(int x0, int x1) const {
+    for (int c = 0; c < 3; ++c)
+      for (int x = std::max(x0, 0); x < std::min(x1, width); x += columns)
+        __builtin_prefetch(sums + c * width + x, 1);
+  }
+
  private:
   void add_some(const Bytes& which, const Longs (&values)[3], int x) const {
     for (int i = 0; i < columns; ++i) {
@@ -181,12 +188,14 @@ void DifferenceSums::add_strip(std::span<const TileSamples> tiles, int y0, int y
   const int half = static_cast<int>(tiles[0].sample & 1);
   const TileStrip strip(tiles, left, top, 1 / radiance_unit());
   const int begin = std::max(strip.y(), y0 - top), end = std::min(strip.y() + TileStrip::height, y1 - top);
+  const auto row_of = [&](int y, Term term) {
+    const std::size_t at = row(half, y) + place(term);
+    return RowOfTerm{sums_.data() + at * channels, counts_.data() + at, width_};
+  };
   for (int y = begin; y < end; ++y) {
-    const auto row_of = [&](Term term) {
-      const std::size_t at = row(half, y) + place(term);
-      return RowOfTerm{sums_.data() + at * channels, counts_.data() + at, width_};
-    };
-    const RowOfTerm of_own = row_of(own), of_right = row_of(right), of_below = row_of(below);
+    const RowOfTerm of_own = row_of(y, own), of_right = row_of(y, right), of_below = row_of(y, below);
+    for (const Term term : {own, right, below})
+      if (y + 1 < end) row_of(y + 1, term).expect(strip.x(), strip.x() + TileStrip::width);
     const int r = y - strip.y();
     for (int column = 0; column < TileStrip::width; column += columns) {
       Bytes kept, with_right, with_below;

@@ -121,7 +121,7 @@ struct FilmFile {
     std::ifstream in(file, std::ios::binary);
     const auto read = [&](auto& values, std::size_t per_pixel, std::size_t halves = 1) {
       const std::size_t bytes = per_pixel * sizeof values[0];
-      values.resize(halves * per_pixel * count);
+      values = std::remove_cvref_t<decltype(values)>(halves * per_pixel * count);
       for (std::size_t half = 0; half < halves; ++half, section += pixels * bytes) {
         in.seekg(static_cast<std::streamoff>(section + first * bytes));
         in.read(reinterpret_cast<char*>(values.data() + half * per_pixel * count),
@@ -225,7 +225,7 @@ struct FilmFile {
 
   template <class Values>
   static const char* read_values(const char* at, Values& values, std::size_t count) {
-    values.resize(count);
+    if (values.size() != count) values = Values(count);
     if (count > 0) std::memcpy(values.data(), at, count * sizeof values[0]);
     return at + count * sizeof values[0];
   }

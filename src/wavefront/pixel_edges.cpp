@@ -1,6 +1,9 @@
 #include "wavefront/pixel_edges.h"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "geometry/ray_arrays.h"
 #include "wavefront/host_rays.h"
@@ -31,40 +34,51 @@ bool differ(const Corner& a, const Corner& b) {
          std::abs(dot(a.normal, apart)) > most_sine * length(apart);
 }
 
-/// Whether neighbours of a pixel's corners, in their order around it, differ.
-bool is_edge(const Corner (&corners)[4]) {
-  for (int i = 0; i < 4; ++i)
-    if (differ(corners[i], corners[(i + 1) % 4])) return true;
-  return false;
-}
-
-/// Whether the camera sees a lamp at one of them. The sky does not count: it is seldom much brighter than
-/// what stands before it, and then a ray that says which of both is seen had better say what it brings as
-/// well.
-bool sees_lamp(const Scene& scene, const Corner (&corners)[4]) {
-  return std::ranges::any_of(corners, [&](const Corner& corner) {
-    return corner.material != nothing && scene.emits(static_cast<std::uint16_t>(corner.material));
-  });
-}
-
 /// The corners along the upper sides of a row of pixels.
-std::vector<Corner> corners(const Scene& scene, const KernelApi& kernel, const KernelSceneData& data,
-                            const Window& window, int x0, int x1, int y) {
-  RayArrays rays;
-  for (int x = x0; x <= x1; ++x) {
-    const CameraRay ray = scene.camera.ray(x, y, window.full_width, window.full_height, 0, 0);
-    rays.add({Vec3f(ray.origin), Vec3f(normalize(ray.direction))});
+class Corners {
+ public:
+  /// Columns x0 <= x < x0 + count.
+  Corners(const Scene& scene, const KernelApi& kernel, const KernelSceneData& data, const Window& window,
+          int x0, std::size_t count, int y)
+      : scene_(&scene), data_(&data), rays_(count), hits_(count), found_(count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const CameraRay ray =
+          scene.camera.ray(x0 + static_cast<int>(i), y, window.full_width, window.full_height, 0, 0);
+      rays_.set(i, {Vec3f(ray.origin), Vec3f(normalize(ray.direction))});
+    }
+    rays_.closest([&](const RayBatch& b) { closest_hits(kernel, data, true, b); }, 0, count, hits_.data());
   }
-  std::vector<Hit<float>> hits(rays.size());
-  rays.closest([&](const RayBatch& b) { closest_hits(kernel, data, true, b); }, 0, rays.size(), hits.data());
-  std::vector<Corner> found(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (!hits[i].found()) continue;
-    const auto [normal, material] = surface_hit(scene, data, hits[i]);
-    found[i] = {material, rays[i].origin + rays[i].direction * hits[i].t, normal};
+
+  /// Whether its corner i and corner k of another row see different surfaces. Nearly all see one triangle,
+  /// or nothing.
+  bool differs(std::size_t i, Corners& other, std::size_t k) {
+    const Hit<float>&a = hits_[i], &b = other.hits_[k];
+    if (a.triangle == b.triangle && a.instance == b.instance) return false;
+    return differ(at(i), other.at(k));
   }
-  return found;
-}
+
+  /// Whether the camera sees a lamp at corner i. The sky does not count: it is seldom much brighter than what
+  /// stands before it, and then a ray that says which of both is seen had better say what it brings as well.
+  bool sees_lamp(std::size_t i) {
+    const std::uint32_t material = at(i).material;
+    return material != nothing && scene_->emits(static_cast<std::uint16_t>(material));
+  }
+
+ private:
+  const Corner& at(std::size_t i) {
+    std::optional<Corner>& corner = found_[i];
+    if (corner) return *corner;
+    if (!hits_[i].found()) return corner.emplace();
+    const auto [normal, material] = surface_hit(*scene_, *data_, hits_[i]);
+    return corner.emplace(Corner{material, rays_[i].origin + rays_[i].direction * hits_[i].t, normal});
+  }
+
+  const Scene* scene_;
+  const KernelSceneData* data_;
+  RayArrays rays_;
+  std::vector<Hit<float>> hits_;
+  std::vector<std::optional<Corner>> found_;
+};
 
 }  // namespace
 
@@ -84,15 +98,20 @@ PixelEdges::PixelEdges(const Scene& scene, const KernelApi& kernel, const Kernel
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
   for (int begin = 0; begin < height; begin += rows_of_a_strip) {
     const auto corners_of = [&](int row) {
-      return corners(scene, kernel, data, window, x0_, x0_ + width_, y0_ + row);
+      return Corners(scene, kernel, data, window, x0_, static_cast<std::size_t>(width_) + 1, y0_ + row);
     };
-    std::vector<Corner> above = corners_of(begin);
+    Corners above = corners_of(begin);
     for (int row = begin; row < std::min(begin + rows_of_a_strip, height); ++row) {
-      std::vector<Corner> below = corners_of(row + 1);
+      Corners below = corners_of(row + 1);
       std::uint8_t* kinds = &kinds_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_)];
-      for (std::size_t x = 0; x + 1 < above.size(); ++x) {
-        const Corner seen[] = {above[x], above[x + 1], below[x + 1], below[x]};
-        if (is_edge(seen)) kinds[x] = sees_lamp(scene, seen) ? lamp_edge : edge;
+      for (std::size_t x = 0; x < static_cast<std::size_t>(width_); ++x) {
+        // around the pixel; which of two corners comes first matters to nearly flat steps
+        if (!above.differs(x, above, x + 1) && !above.differs(x + 1, below, x + 1) &&
+            !below.differs(x + 1, below, x) && !below.differs(x, above, x))
+          continue;
+        const bool lamp =
+            above.sees_lamp(x) || above.sees_lamp(x + 1) || below.sees_lamp(x) || below.sees_lamp(x + 1);
+        kinds[x] = lamp ? lamp_edge : edge;
       }
       above = std::move(below);
     }
