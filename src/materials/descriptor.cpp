@@ -161,6 +161,13 @@ bool has_narrow_lobe(const Material& m) {
   return !has_smooth_lobe(m) && !m.has_alpha_map() && m.alpha < narrow_below;
 }
 
+bool has_narrow_coat(const Material& m) {
+  constexpr std::uint32_t mirrored = trait_specular | trait_transmits | trait_focuses;
+  const std::uint32_t traits = traits_of(m);
+  if (!(traits & trait_directional) || (traits & mirrored)) return false;
+  return has_narrow_lobe(m) || m.clearcoat > 0;
+}
+
 bool uses_vertex_colors(const Material& m) {
   const auto is_key = [](const MaterialKey& key) { return key.field == vertex_colors_key().field; };
   return m.vertex_colors && std::ranges::any_of(descriptor_of(m.type).keys, is_key);

@@ -98,6 +98,9 @@ double lobe_aspect(const Material& material);
 /// Whether GGX lobes of this material are nearly as narrow as a mirror's, though not smooth.
 bool has_narrow_lobe(const Material& material);
 
+/// Whether it has a narrow lobe though points may gather through it: over a base that scatters everywhere.
+bool has_narrow_coat(const Material& material);
+
 /// Whether the colours of vertices count for a material of this type that asks for them.
 bool uses_vertex_colors(const Material& material);
 

@@ -94,6 +94,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
   if (options.reuse.automatic && needs.specular) plan.few_suffixes = plan.suffixes / 2;
+  plan.narrow_coats = needs.narrow_coats;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.reconstruct = options.reconstruct != Switch::off;
   plan.edge_samples = edge_samples(needs, options);
@@ -159,13 +160,13 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain) {
   plan.kernel = kernel_name(plan);
 }
 
-void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few) {
+void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few, bool by_single_samples) {
   constexpr double enough = 1.5;
   // A wrong choice of few suffixes costs little. But where caustics by chance are very bright, what is seen
   // of them by way of glass is most of the error, rarer than a pilot meets, and sharing does not lessen it.
   constexpr double very_bright = 200;
   const double least_of_few = plan.gain_of_light_paths >= very_bright ? enough : 1;
-  if (gain_of_sharing < (few ? least_of_few : std::min(error, enough)))
+  if (gain_of_sharing < (few && !by_single_samples ? least_of_few : std::min(error, enough)))
     plan.suffixes = 0;
   else if (few)
     plan.suffixes = plan.few_suffixes;

@@ -27,6 +27,7 @@ struct Plan {
   std::size_t light_regions = 0;       ///< from which it is known what lights are seen; 0: it is not
   double gain_of_regions = 1;          ///< how many times smaller they make a light sample's mean square
   bool lights_by_solid_angle = false;  ///< points on them, where that can be had
+  bool narrow_coats = false;           ///< of surfaces, as SceneNeeds has it
   BuildQuality build = BuildQuality::fast;  ///< of the tree
   double gain_of_light_paths = 0;           ///< over chance, as a pilot saw it; 0: none was asked
   double gain_of_reconstruction = 0;        ///< over means, likewise
@@ -60,8 +61,9 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain);
 
 /// Takes shared paths if these are that many times as efficient as plain ones and it is more than the
 /// standard error, a factor, or than 1.5. `few`: that is with few suffixes, which are taken from a gain of 1
-/// on, or of 1.5 where paths from lights do 200 times better than chance. Says so in Plan::kernel. After
-/// choose_caustics.
-void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few = false);
+/// on, unless it is known from single samples alone, or of 1.5 where paths from lights do 200 times better
+/// than chance. Says so in Plan::kernel. After choose_caustics.
+void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few = false,
+                     bool by_single_samples = false);
 
 }  // namespace castray

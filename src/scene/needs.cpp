@@ -21,6 +21,7 @@ SceneNeeds needs_of(const Scene& scene) {
     needs.textures |= (traits_of(m) & trait_stretched) != 0;
     needs.specular |= (traits_of(m) & (trait_specular | trait_focuses)) != 0;
     needs.glossy |= (traits_of(m) & trait_directional) && (traits_of(m) & trait_shareable);
+    needs.narrow_coats |= has_narrow_coat(m);
     needs.bent_normals |= (traits_of(m) & trait_bent) != 0;
     needs.coverage |= m.may_have_holes();
     needs.glass_shares |= m.has_glass();

@@ -16,6 +16,7 @@ struct SceneNeeds {
   std::set<MaterialType> types;  ///< of materials
   bool specular = false;         ///< a perfectly smooth mirror or glass
   bool glossy = false;        ///< a surface that reflects other than by Lambert's model, and not as a mirror
+  bool narrow_coats = false;  ///< a narrow lobe over a base whose light pixels share, as plastic has
   bool bent_normals = false;  ///< by normal or bump maps
   bool coverage = false;      ///< surfaces of which only a share is there
   bool glass_shares = false;  ///< surfaces that are glass at some points

@@ -58,6 +58,7 @@ SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const Light
 /// Plain and shared paths, with caustics by one technique; the same where paths are plain.
 struct Ways {
   TechniqueFigures plain, shared;
+  bool narrow_coats = false;  ///< as in Pilot
 };
 
 /// Errors times costs; `few`: that of shared paths is with half of the suffixes.
@@ -74,13 +75,44 @@ struct Products {
 
 /// From a pilot's samples to 64 the error of shared paths grows that many times, beside that of plain ones,
 /// which are stratified over all samples of a pixel: by a tenth at least in each step, as on scenes of many
-/// kinds.
+/// kinds; typically by what is taken where single samples are all that is known.
 double growth_beside_plain(const Ways& ways) {
   const auto remains = [](const TechniqueFigures& f) { return f.error / f.single_error; };
-  constexpr double least = 1.1, most = 1.5;
+  constexpr double least = 1.1, most = 1.5, typical = 1.5;
   if (!(ways.plain.error > 0) || !(ways.shared.error > 0)) return 1;
+  if (!(ways.plain.single_error > 0)) return typical;
   const double growth = std::clamp(remains(ways.shared) / remains(ways.plain), least, most);
   return growth * growth;  // 4 to 64 are two steps of 1 to 4
+}
+
+/// How much of the noise of shared paths is taken for pixels' own, from 0 to 1: all of it where most is. Rare
+/// bright samples that no tile has met are pixels' own, too.
+double taken_for_own(double own_share) {
+  constexpr double half = 0.5, most_own = 0.65;
+  return std::clamp((own_share - half) / (most_own - half), 0.0, 1.0);
+}
+
+/// Bright samples in single pixels of a tile that shares its paths came by paths of these pixels alone, which
+/// plain paths find as rarely: an error of both. The more samples, the brighter ones are met, so it counts
+/// several times. Not where neighbours' noise is alike: there shared paths are as bright themselves.
+double common_error(const TechniqueFigures& shared) {
+  constexpr double missed = 3;
+  return missed * shared.lonely_error * taken_for_own(shared.own_share);
+}
+
+/// The least that is taken for common to both: a lamp in a narrow lobe over a base is found by chance, as
+/// bright as in a mirror and rarer than pilots meet. It is little beside the noise of rooms, and much where
+/// plain paths have hardly any: in the sun.
+double unseen_error(const Ways& ways) {
+  constexpr double by_narrow_coats = 0.05;  // in sunlight on plastic of several roughnesses 0.02 to 0.1
+  return ways.narrow_coats ? by_narrow_coats : 0;
+}
+
+/// Where neighbours' noise is alike, sharing has spread what plain paths find as rare bright samples. These
+/// may all be in the few tiles whose errors are lowered.
+double plain_error(const Ways& ways) {
+  const bool spread = taken_for_own(ways.shared.own_share) == 0;
+  return spread ? std::max(ways.plain.error, ways.plain.lonely_error) : ways.plain.error;
 }
 
 /// How much of the variance by chance is left where paths are shared, if the tiles find caustics as often as
@@ -119,8 +151,10 @@ Products products_of(const Ways& ways, const Ways& rest, double of_plain, double
   constexpr double error_of_half = 1.55, cost_of_none = 0.63, gains_much = 2.25;
   const double plain_cost = ways.plain.cost + rays, cost = ways.shared.cost + rays;
   const double error = rest.shared.error * growth_beside_plain(rest);
-  const double plain = (rest.plain.error + of_plain) * plain_cost, all = (error + of_shared) * cost;
-  const double half = (error_of_half * error + of_shared) * (cost_of_none * plain_cost + cost) / 2;
+  const double common = std::max(common_error(rest.shared), unseen_error(rest));
+  const double plain = (plain_error(rest) + of_plain + common) * plain_cost;
+  const double all = (error + of_shared + common) * cost;
+  const double half = (error_of_half * error + of_shared + common) * (cost_of_none * plain_cost + cost) / 2;
   const bool few = few_may_do && half < all && plain < gains_much * all;
   return {plain, few ? half : all, few};
 }
@@ -132,13 +166,13 @@ Products products_of(const Ways& ways, const Ways& rest, double of_plain, double
 /// has met are a pixel's own; so the more of the error is known to be, from half of it on, the less is
 /// counted on, and nothing from 0.65 on. Time is that at 4 samples, where it counts most, in rays: of sums
 /// for each sample, and of edges and equations once for each pixel.
-double gain_of_reconstruction(const TechniqueFigures& shared, double own_error, double rays, bool list) {
-  constexpr double least_left = 0.3, half = 0.5, most_own = 0.65, few_samples = 4;
+double gain_of_reconstruction(const TechniqueFigures& shared, double splats, double rays, bool list) {
+  constexpr double least_left = 0.3, few_samples = 4;
   const double unit = list ? 1 : 0.25, sums = 1 * unit, equations = 13 * unit;
+  const double own_error = splats + common_error(shared);
   if (!(shared.error + own_error > 0)) return 0;
   const double own = (shared.own_share * shared.error + own_error) / (shared.error + own_error);
-  const double doubt = std::clamp((own - half) / (most_own - half), 0.0, 1.0);
-  const double left = least_left + (1 - least_left) * doubt;
+  const double left = least_left + (1 - least_left) * taken_for_own(own);
   const double error = std::min(own, 1.0) * (1 - left) + left, cost = shared.cost + rays;
   return cost / (cost + sums + equations / few_samples) / error;
 }
@@ -159,17 +193,17 @@ std::vector<KernelOptions> techniques_of(const KernelOptions& options, bool both
 /// What gains are computed from, but for the figures of tiles.
 struct Question {
   OpenChoices open;
-  bool by_lights;    ///< caustics may be brought by light paths
-  bool both;         ///< it is open whether they are
-  bool tried;        ///< then tiles were tried with caustics by chance, too
-  bool list;         ///< as in Pilot
-  std::size_t ways;  ///< 2: shared and plain paths; 1: plain ones
+  bool by_lights;           ///< caustics may be brought by light paths
+  bool both;                ///< it is open whether they are
+  bool tried;               ///< then tiles were tried with caustics by chance, too
+  bool list, narrow_coats;  ///< as in Pilot
+  std::size_t ways;         ///< 2: shared and plain paths; 1: plain ones
   SplatSums splats;
 };
 
 /// `figures`: of techniques_of.
 Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) {
-  const Ways rest{figures[0], figures[q.ways - 1]};
+  const Ways rest{figures[0], figures[q.ways - 1], q.narrow_coats};
   Gains gains;
   if (!q.by_lights) {
     const Products by_chance = products_of(rest, rest, 0, 0, 0, q.open.few);
@@ -185,7 +219,7 @@ Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) 
   gains.few_by_lights = by_light.few;
   gains.reconstruction_by_lights = gain_of_reconstruction(rest.shared, caustics.by_light, rays, q.list);
   if (!q.both || !(max_component(q.splats.radiance) > 0)) return gains;
-  const Ways chance = q.tried ? Ways{figures[q.ways], figures.back()} : rest;
+  const Ways chance = q.tried ? Ways{figures[q.ways], figures.back(), q.narrow_coats} : rest;
   const double left = q.tried ? left_by_sharing(rest, chance, caustics.by_chance) : 1;
   const Products by_chance =
       products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0, q.open.few);
@@ -198,7 +232,7 @@ Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) 
 
 /// Whether light paths do better than chance even if sharing leaves as little of that as it can.
 bool light_paths_win(const Question& q, const std::vector<TechniqueFigures>& figures) {
-  const Ways rest{figures[0], figures[q.ways - 1]};
+  const Ways rest{figures[0], figures[q.ways - 1], q.narrow_coats};
   const CausticErrors caustics(q.splats, rest.plain.brightness);
   const double least = caustics.by_chance / tile_pixels;
   const Products by_light =
@@ -228,17 +262,20 @@ LogGains log_gains(const Question& q, const std::vector<TechniqueFigures>& figur
 }
 
 /// The standard error of each logarithm of `gains`, by the jackknife over tiles. Of noise that few tiles have
-/// met it tells nothing, so a factor of 1.6 in each tile is added; its square for reconstruction, which
-/// hardly helps against such noise.
+/// met it tells nothing, so a factor of 1.6 in each tile is added, 2 where there is one sample of each; its
+/// square for reconstruction, which hardly helps against such noise. Single samples do not tell how errors
+/// fall, either: a factor of 1.2 for all tiles together.
 LogErrors errors_of(const Question& q, const TileTrials& trials, const LogGains& gains) {
-  constexpr double unseen = 0.25;  // squared log of that factor
-  const double n = static_cast<double>(trials.tiles());
-  LogErrors variance{unseen / n, unseen / n, 4 * unseen / n};
+  constexpr double of_four = 0.25, of_one = 0.5, of_fall = 0.04;  // squared logs of those factors
+  const bool one = trials.samples() == Samples::one;
+  const double tiles = static_cast<double>(trials.tiles());
+  const double unseen = (one ? of_one : of_four) / tiles, fall = one ? of_fall : 0;
+  LogErrors variance{unseen, unseen + fall, 4 * unseen};
   for (std::size_t tile = 0; tile < trials.tiles(); ++tile) {
     const LogGains without = log_gains(q, trials.figures_without(tile));
     for (std::size_t k = 0; k < gains.size(); ++k) {
       const double change = without[k].value_or(0) - gains[k].value_or(0);
-      variance[k] += change * change * (n - 1) / n;
+      variance[k] += change * change * (tiles - 1) / tiles;
     }
   }
   for (double& v : variance) v = std::sqrt(v);
@@ -253,23 +290,17 @@ double expected_loss(double log_gain, double error) {
   return error * (density - z * beyond);
 }
 
-/// What one more group of tiles takes, as a part of an image of few samples, of the cheapest technique.
-double cost_of_group(const Pilot& pilot, const std::vector<TechniqueFigures>& figures) {
-  constexpr double few_samples = 32;
-  double sum = 0, least = figures.front().cost;
-  for (const TechniqueFigures& f : figures) {
-    sum += f.cost;
-    least = std::min(least, f.cost);
-  }
-  const double pixels = double(pilot.width) * pilot.height;
-  return least > 0 ? sum * group_samples / (least * few_samples * pixels) : 0;
+/// Of an image of few samples, by plain paths; in rays.
+double cost_of_few_samples(const Pilot& pilot, const Question& q, const TileTrials& trials) {
+  constexpr double few_samples = 16;
+  const double rays = q.by_lights ? q.splats.rays : 0;
+  return few_samples * pilot.width * pilot.height * (trials.figures().front().cost + rays);
 }
 
-/// Whether all that is open can be chosen, with a loss that another group of tiles would not make up for.
-bool is_clear(const Question& q, const Pilot& pilot, const TileTrials& trials) {
-  const std::vector<TechniqueFigures> figures = trials.figures();
-  const double worthwhile = cost_of_group(pilot, figures);
-  const LogGains gains = log_gains(q, figures);
+/// Whether all that is open can be chosen, with a loss of efficiency that more of a pilot would not make up
+/// for.
+bool is_clear(const Question& q, const TileTrials& trials, double worthwhile) {
+  const LogGains gains = log_gains(q, trials.figures());
   const LogErrors errors = errors_of(q, trials, gains);
   for (std::size_t k = 0; k < gains.size(); ++k)
     if (gains[k] && expected_loss(*gains[k], errors[k]) > worthwhile) return false;
@@ -280,20 +311,32 @@ bool is_clear(const Question& q, const Pilot& pilot, const TileTrials& trials) {
 
 Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenChoices& open,
                  const LightPathsJob& light_paths_job) {
+  constexpr double share = 0.035;  // of an image of few samples, for the pilot
   const bool both = options.light_paths && open.caustics;
-  TileTrials trials(pilot, techniques_of(options, false));
+  TileTrials trials(pilot, techniques_of(options, false), Samples::one);
   if (!trials.try_more()) return {};
-  Question q{open, options.light_paths, both, false, pilot.list, options.suffixes > 0 ? 2u : 1u, {}};
+  const std::size_t ways = options.suffixes > 0 ? 2 : 1;
+  Question q{open, options.light_paths, both, false, pilot.list, pilot.narrow_coats, ways, {}};
   if (options.light_paths) q.splats = try_light_paths(pilot, options, light_paths_job);
-  if (both && !light_paths_win(q, trials.figures())) {
-    q.tried = true;
-    trials = TileTrials(pilot, techniques_of(options, true));
-    trials.try_more();
-  }
-  while (!is_clear(q, pilot, trials) && trials.try_more()) {
+  const double image = cost_of_few_samples(pilot, q, trials);
+  double left = share * image - trials.cost();
+  const bool chance_may_win = both && !light_paths_win(q, trials.figures());
+  while (true) {
+    const bool more_ways = chance_may_win && !q.tried;  // as many again, and only with four samples
+    const double longer = trials.cost_of_group(Samples::four) * (more_ways ? 2 : 1);
+    const bool four = longer <= left;
+    const double next = four ? longer : trials.cost_of_group(trials.samples());
+    if (next > left || (!(four && more_ways) && is_clear(q, trials, next / image))) break;
+    if (four && trials.samples() == Samples::one) {
+      q.tried = chance_may_win;
+      trials = TileTrials(pilot, techniques_of(options, q.tried), Samples::four);
+    }
+    if (!trials.try_more()) break;
+    left -= next;
   }
   Gains gains = gains_of(q, trials.figures());
   gains.sharing_error = std::exp(errors_of(q, trials, log_gains(q, trials.figures()))[of_sharing]);
+  gains.by_single_samples = trials.samples() == Samples::one;
   return gains;
 }
 

@@ -21,7 +21,8 @@ struct Gains {
       sharing_by_lights;  ///< of shared over plain paths, with caustics by paths from lights
   std::optional<double> sharing_by_chance;            ///< the same with caustics by chance
   bool few_by_lights = false, few_by_chance = false;  ///< whether these are with half of the suffixes
-  double sharing_error = 1;  ///< the standard error of the gain of sharing, as a factor
+  double sharing_error = 1;        ///< the standard error of the gain of sharing, as a factor
+  bool by_single_samples = false;  ///< all of this: the image was too small to try four of each tile
   /// Of images from differences of pixels over those from means, at few samples and with shared paths.
   std::optional<double> reconstruction_by_lights, reconstruction_by_chance;
 };
@@ -42,8 +43,9 @@ struct OpenChoices {
 /// Tiles are tried without chance where light paths would win whatever sharing leaves of it. Their gain is
 /// then that over chance of which it leaves all.
 ///
-/// Tiles are tried in groups, until what a wrong choice is expected to lose is less than the time that
-/// another group would take.
+/// Tiles are tried in groups, first by single samples, then by four, until what a wrong choice is expected to
+/// lose is less than the time that another group would take, or all have taken a few per cent of the time of
+/// an image of 16 samples.
 ///
 /// A function of the scene, the image's full size and the options but their seed: never of time, threads, or
 /// the part of the image or of its samples that is wanted. So parts of one image agree. None of the pilot's

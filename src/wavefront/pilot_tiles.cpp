@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "core/sequences.h"
@@ -13,8 +14,7 @@ namespace {
 
 /// Of the image's tiles, one in so many; and no more than suffice.
 constexpr int sparseness = 8, most_tiles = 48;
-constexpr std::size_t replicates = 2, samples = 4;
-static_assert(group_samples == replicates * samples * batch_size);
+constexpr std::size_t replicates = 2, most_samples = 4;
 
 /// In rays: what a pixel's gathering from one thing that a tile shares costs where a shaft answers for the
 /// tile, and where a ray is asked; and the BSDFs that this evaluates. Fitted to the times of scenes of many
@@ -33,16 +33,24 @@ double cost_of(const TileResult& r, const Costs& costs) {
 
 using TilePixels = std::array<Vec3d, tile_pixels>;
 
-/// Tiles of 8x8 pixels, the last one perhaps in part.
-int tiles_along(int pixels) { return (pixels + tile_size - 1) / tile_size; }
-
 /// What one technique made of one tile.
 struct TileRun {
-  TilePixels sample[replicates][samples] = {};
+  std::size_t samples;
+  TilePixels sample[replicates][most_samples] = {};
 };
 
 /// Tiles of one group, which one job renders.
-using Group = std::array<TilePlace, max_tiles>;
+using Group = std::vector<TilePlace>;
+
+/// Tiles of 8x8 pixels, the last one perhaps in part.
+int tiles_along(int pixels) { return (pixels + tile_size - 1) / tile_size; }
+
+/// Of images so small that a job's are more than a pilot of a few per cent can try, half as many.
+std::size_t tiles_of_group(const Pilot& pilot, Samples samples) {
+  constexpr int small = 32 * max_tiles;
+  const bool half = samples == Samples::one && tiles_along(pilot.width) * tiles_along(pilot.height) <= small;
+  return half ? max_tiles / 2 : max_tiles;
+}
 
 /// Point `number` of a sequence of low discrepancy over the grid (Roberts 2018, R2).
 TilePlace tile_at(const Pilot& pilot, std::size_t number) {
@@ -66,8 +74,8 @@ Group in_moved_grid(Group tiles, std::uint32_t seed, std::uint32_t sample) {
 
 /// What one technique made of the tiles of a group.
 struct GroupRun {
-  std::array<TileRun, max_tiles> tiles;
-  double cost[replicates][samples] = {};  ///< in rays
+  std::vector<TileRun> tiles;
+  double cost[replicates][most_samples] = {};  ///< in rays
 };
 
 void render_sample(const Pilot& pilot, KernelOptions options, const Group& group, std::uint32_t replicate,
@@ -76,7 +84,7 @@ void render_sample(const Pilot& pilot, KernelOptions options, const Group& group
   options.seed = hash_combine(0x9170fu, replicate);
   const Group places = in_moved_grid(group, options.seed, sample);
   TileJob job{};
-  job.tiles = max_tiles;
+  job.tiles = static_cast<int>(group.size());
   job.sample = sample;
   job.places = places.data();
   std::vector<std::uint32_t> place(2 * batch_size);
@@ -85,7 +93,7 @@ void render_sample(const Pilot& pilot, KernelOptions options, const Group& group
   TileResult result{&place[0], &place[batch_size],         {part(0), part(1), part(2)}, 0, 0, 0,
                     0,         {part(3), part(4), part(5)}};
   pilot.render_job(options, job, result);
-  for (std::size_t i = 0; i < batch_size; ++i) {
+  for (std::size_t i = 0; i < group.size() * tile_pixels; ++i) {
     Vec3d radiance;
     for (int c = 0; c < 3; ++c) radiance[c] = double{result.radiance[c][i]} - double{result.emitted[c][i]};
     if (is_finite(radiance)) run.tiles[i / tile_pixels].sample[replicate][sample][i % tile_pixels] = radiance;
@@ -95,9 +103,10 @@ void render_sample(const Pilot& pilot, KernelOptions options, const Group& group
 
 /// By technique.
 std::vector<GroupRun> render_group(const Pilot& pilot, const std::vector<KernelOptions>& techniques,
-                                   const Group& group) {
-  constexpr std::size_t jobs = replicates * samples;
-  std::vector<GroupRun> runs(techniques.size());
+                                   const Group& group, std::size_t samples) {
+  const std::size_t jobs = replicates * samples;
+  std::vector<GroupRun> runs(techniques.size(),
+                             GroupRun{std::vector<TileRun>(group.size(), TileRun{samples})});
 #pragma omp parallel for schedule(dynamic) num_threads(pilot.threads)
   for (std::size_t i = 0; i < techniques.size() * jobs; ++i)
     render_sample(pilot, techniques[i / jobs], group, static_cast<std::uint32_t>(i % jobs / samples),
@@ -105,26 +114,29 @@ std::vector<GroupRun> render_group(const Pilot& pilot, const std::vector<KernelO
   return runs;
 }
 
-/// Of a sample of a pixel.
-double mean_cost(const GroupRun& run) {
+double cost_of(const GroupRun& run) {
   double sum = 0;
   for (const auto& replicate : run.cost)
     for (const double cost : replicate) sum += cost;
-  return sum / double(replicates * samples * batch_size);
+  return sum;
 }
+
+double samples_of(const TileRun& run) { return static_cast<double>(replicates * run.samples * tile_pixels); }
 
 Vec3d mean_of_tile(const TileRun& run) {
   Vec3d sum;
   for (const auto& replicate : run.sample)
     for (const TilePixels& pixels : replicate)
       for (const Vec3d& pixel : pixels) sum += pixel;
-  return sum / double(replicates * samples * tile_pixels);
+  return sum / samples_of(run);
 }
 
-/// The error of means over `count` samples; see TechniqueFigures.
-double relative_error(const TileRun& run, std::size_t count, const Vec3d& brightness) {
-  double error = 0;
-  for (std::size_t first = 0; first < samples; first += count)
+using PixelErrors = std::array<double, tile_pixels>;
+
+/// The errors of pixels' means over `count` samples; see TechniqueFigures.
+PixelErrors pixel_errors(const TileRun& run, std::size_t count, const Vec3d& brightness) {
+  PixelErrors errors{};
+  for (std::size_t first = 0; first < run.samples; first += count)
     for (std::size_t i = 0; i < tile_pixels; ++i) {
       Vec3d sum, squares;
       for (const auto& replicate : run.sample) {
@@ -134,11 +146,30 @@ double relative_error(const TileRun& run, std::size_t count, const Vec3d& bright
         squares += mean * mean;
       }
       for (int c = 0; c < 3; ++c)
-        error += std::max(squares[c] - sum[c] * sum[c] / replicates, 0.0) / (replicates - 1) /
-                 (brightness[c] * brightness[c] + 0.01);
+        errors[i] += std::max(squares[c] - sum[c] * sum[c] / replicates, 0.0) / (replicates - 1) /
+                     (brightness[c] * brightness[c] + 0.01);
     }
-  const std::size_t means = samples / count;
-  return error * double(count) / double(means * tile_pixels);
+  const std::size_t means = run.samples / count;
+  for (double& error : errors) error *= double(count) / double(means);
+  return errors;
+}
+
+double mean_of(const PixelErrors& errors) {
+  double sum = 0;
+  for (const double error : errors) sum += error;
+  return sum / tile_pixels;
+}
+
+double relative_error(const TileRun& run, std::size_t count, const Vec3d& brightness) {
+  return mean_of(pixel_errors(run, count, brightness));
+}
+
+/// What the worst pixel has beyond a few others: not if they see an edge, but if a sample of its own is
+/// bright.
+double lonely_error(PixelErrors errors) {
+  constexpr std::size_t others = 3;
+  std::nth_element(errors.begin(), errors.begin() + others, errors.end(), std::greater<>());
+  return (*std::max_element(errors.begin(), errors.end()) - errors[others]) / tile_pixels;
 }
 
 /// Half of the error of differences of neighbours: as that of pixels if their noise is their own.
@@ -146,16 +177,16 @@ double difference_error(const TileRun& run, const Vec3d& brightness) {
   constexpr int pairs = 2 * tile_size * (tile_size - 1);
   double error = 0;
   for (const int step : {1, tile_size}) {  // to the right, below
-    TileRun differences;
+    TileRun differences{run.samples};
     for (std::size_t r = 0; r < replicates; ++r)
-      for (std::size_t s = 0; s < samples; ++s)
+      for (std::size_t s = 0; s < run.samples; ++s)
         for (int i = 0; i + step < tile_pixels; ++i) {
           const TilePixels& pixels = run.sample[r][s];
           const auto here = static_cast<std::size_t>(i), there = static_cast<std::size_t>(i + step);
           const bool last_column = step == 1 && there % tile_size == 0;
           if (!last_column) differences.sample[r][s][here] = pixels[there] - pixels[here];
         }
-    error += relative_error(differences, samples, brightness);
+    error += relative_error(differences, run.samples, brightness);
   }
   return error / 2 * tile_pixels / pairs;
 }
@@ -167,9 +198,12 @@ std::vector<TechniqueFigures> figures_of(const std::vector<GroupRun>& runs, std:
   std::vector<TechniqueFigures> figures;
   for (const GroupRun& group : runs) {
     const TileRun& run = group.tiles[tile];
-    const double error = relative_error(run, samples, brightness);
-    figures.push_back({mean_of_tile(run), error, relative_error(run, 1, brightness),
-                       error > 0 ? difference_error(run, brightness) / error : 0, mean_cost(group)});
+    const double error = relative_error(run, run.samples, brightness);
+    const double tiles = static_cast<double>(group.tiles.size());
+    figures.push_back({mean_of_tile(run), error, run.samples > 1 ? relative_error(run, 1, brightness) : 0,
+                       error > 0 ? difference_error(run, brightness) / error : 0,
+                       lonely_error(pixel_errors(run, run.samples, brightness)),
+                       cost_of(group) / (tiles * samples_of(run))});
   }
   return figures;
 }
@@ -212,6 +246,7 @@ std::vector<TechniqueFigures> means_over(FiguresByTile by_tile) {
       means[k].brightness += tile[k].brightness * share;
       means[k].error += tile[k].error * share;
       means[k].single_error += tile[k].single_error * share;
+      means[k].lonely_error += tile[k].lonely_error * share;
       means[k].cost += tile[k].cost * share;
     }
   return means;
@@ -219,15 +254,23 @@ std::vector<TechniqueFigures> means_over(FiguresByTile by_tile) {
 
 }  // namespace
 
-TileTrials::TileTrials(Pilot pilot, std::vector<KernelOptions> techniques)
-    : pilot_(std::move(pilot)), techniques_(std::move(techniques)) {}
+TileTrials::TileTrials(Pilot pilot, std::vector<KernelOptions> techniques, Samples samples)
+    : pilot_(std::move(pilot)), techniques_(std::move(techniques)), samples_(samples) {}
+
+double TileTrials::cost_of_group(Samples samples) const {
+  const auto paths = [](std::size_t tiles, Samples of_tile) { return double(tiles) * double(of_tile); };
+  return cost_ * paths(tiles_of_group(pilot_, samples), samples) / paths(tiles(), samples_);
+}
 
 bool TileTrials::try_more() {
   const int spare = tiles_along(pilot_.width) * tiles_along(pilot_.height) / sparseness;
-  if (tiles() + max_tiles > static_cast<std::size_t>(std::min(most_tiles, spare))) return false;
-  Group group;
+  Group group(tiles_of_group(pilot_, samples_));
+  if (spare < max_tiles || tiles() + group.size() > static_cast<std::size_t>(std::min(most_tiles, spare)))
+    return false;
   for (std::size_t i = 0; i < group.size(); ++i) group[i] = tile_at(pilot_, tiles() + i);
-  const std::vector<GroupRun> runs = render_group(pilot_, techniques_, group);
+  const std::vector<GroupRun> runs =
+      render_group(pilot_, techniques_, group, static_cast<std::size_t>(samples_));
+  for (const GroupRun& run : runs) cost_ += cost_of(run);
   for (std::size_t i = 0; i < group.size(); ++i) by_tile_.push_back(figures_of(runs, i));
   return true;
 }

@@ -19,6 +19,7 @@ struct Pilot {
   int threads;
   RenderJob render_job;
   double light_paths_per_pixel = 1;  ///< as in Plan
+  bool narrow_coats = false;         ///< as in Plan
 };
 
 /// Of one technique, means over pixels. Errors are the sum over channels of the variance over replicates,
@@ -26,27 +27,33 @@ struct Pilot {
 struct TechniqueFigures {
   Vec3d brightness;         ///< without what the camera sees of emitters, as errors are
   double error = 0;         ///< of means over some samples
-  double single_error = 0;  ///< of single samples
+  double single_error = 0;  ///< of single samples; 0 where `error` is that
   /// The share of `error` that neighbours do not have alike: that of half of the variance of their
   /// differences.
   double own_share = 1;
-  double cost = 0;  ///< of a sample, in rays, of which what pixels gather is a fraction
+  double lonely_error = 0;  ///< of `error`, what single pixels have beyond all of their tile, in all tiles
+  double cost = 0;          ///< of a sample, in rays, of which what pixels gather is a fraction
 };
 
-/// Of pixels, by each technique in a group of tiles.
-inline constexpr int group_samples = 8 * batch_size;
+/// Samples of a tile, in each of its replicates.
+enum class Samples : std::size_t { one = 1, four = 4 };
 
 /// Tries techniques on the same tiles, group after group of them, each spread over the image. What the camera
 /// sees of emitters is noise of all alike, and left out. Nothing depends on the seed of the options, or on
 /// threads.
 class TileTrials {
  public:
-  TileTrials(Pilot pilot, std::vector<KernelOptions> techniques);
+  TileTrials(Pilot pilot, std::vector<KernelOptions> techniques, Samples samples);
 
   /// Tries one more group. False, and nothing done, if the image is too small to spare more tiles.
   bool try_more();
 
   std::size_t tiles() const { return by_tile_.size(); }
+  Samples samples() const { return samples_; }
+
+  /// Of all that was tried; and of one more group, with so many samples of each tile; in rays.
+  double cost() const { return cost_; }
+  double cost_of_group(Samples samples) const;
 
   /// Of each technique, over the tiles tried until now.
   std::vector<TechniqueFigures> figures() const;
@@ -57,7 +64,9 @@ class TileTrials {
  private:
   Pilot pilot_;
   std::vector<KernelOptions> techniques_;
+  Samples samples_;
   std::vector<std::vector<TechniqueFigures>> by_tile_;
+  double cost_ = 0;
 };
 
 }  // namespace castray

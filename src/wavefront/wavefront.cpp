@@ -111,7 +111,8 @@ class Wavefront final : public PreparedIntegrator {
                 wavefront_.kernel_.render_tiles[wavefront_.plan_.features](wavefront_.data_.view, options,
                                                                            tile, scratch(), result);
               },
-              wavefront_.plan_.light_paths_per_pixel};
+              wavefront_.plan_.light_paths_per_pixel,
+              wavefront_.plan_.narrow_coats};
     }
     LightPathsJob light_paths() {
       return [this](const KernelOptions& options, const LightPathJob& job, const SplatSink& sink) {
@@ -151,7 +152,7 @@ class Wavefront final : public PreparedIntegrator {
                             by_lights ? gains.reconstruction_by_lights : gains.reconstruction_by_chance);
     const std::optional<double>& sharing = by_lights ? gains.sharing_by_lights : gains.sharing_by_chance;
     const bool few = by_lights ? gains.few_by_lights : gains.few_by_chance;
-    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing, gains.sharing_error, few);
+    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing, gains.sharing_error, few, gains.by_single_samples);
   }
 
   const BvhStats& tree_stats() const { return data_.bvh ? data_.bvh->stats() : data_.instances->stats(); }
