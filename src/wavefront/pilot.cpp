@@ -302,9 +302,18 @@ double cost_of_few_samples(const Pilot& pilot, const Question& q, const TileTria
 bool is_clear(const Question& q, const TileTrials& trials, double worthwhile) {
   const LogGains gains = log_gains(q, trials.figures());
   const LogErrors errors = errors_of(q, trials, gains);
+  if (gains[of_reconstruction] && trials.samples() == Samples::one) return false;  // it is of means
   for (std::size_t k = 0; k < gains.size(); ++k)
     if (gains[k] && expected_loss(*gains[k], errors[k]) > worthwhile) return false;
   return true;
+}
+
+/// Whether paths will be shared, and gain so much that a longer pilot cannot make them worse than plain ones.
+bool surely_shares(const Question& q, const TileTrials& trials) {
+  constexpr double much = 2, errors_beyond = 1;
+  const LogGains gains = log_gains(q, trials.figures());
+  if (!gains[of_sharing]) return false;
+  return *gains[of_sharing] > std::log(much) + errors_beyond * errors_of(q, trials, gains)[of_sharing];
 }
 
 }  // namespace
@@ -324,9 +333,9 @@ Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenCho
   while (true) {
     const bool more_ways = chance_may_win && !q.tried;  // as many again, and only with four samples
     const double longer = trials.cost_of_group(Samples::four) * (more_ways ? 2 : 1);
-    const bool four = longer <= left;
+    const bool limited = !surely_shares(q, trials), four = !limited || longer <= left;
     const double next = four ? longer : trials.cost_of_group(trials.samples());
-    if (next > left || (!(four && more_ways) && is_clear(q, trials, next / image))) break;
+    if ((limited && next > left) || (!(four && more_ways) && is_clear(q, trials, next / image))) break;
     if (four && trials.samples() == Samples::one) {
       q.tried = chance_may_win;
       trials = TileTrials(pilot, techniques_of(options, q.tried), Samples::four);
