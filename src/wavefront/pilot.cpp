@@ -308,9 +308,11 @@ bool is_clear(const Question& q, const TileTrials& trials, double worthwhile) {
   return true;
 }
 
-/// Whether paths will be shared, and gain so much that a longer pilot cannot make them worse than plain ones.
+/// Whether paths will be shared, and gain so much that a longer pilot cannot make them worse than plain ones;
+/// or are so as it is wanted.
 bool surely_shares(const Question& q, const TileTrials& trials) {
   constexpr double much = 2, errors_beyond = 1;
+  if (!q.open.sharing) return q.open.reconstruction;
   const LogGains gains = log_gains(q, trials.figures());
   if (!gains[of_sharing]) return false;
   return *gains[of_sharing] > std::log(much) + errors_beyond * errors_of(q, trials, gains)[of_sharing];
