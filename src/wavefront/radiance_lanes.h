@@ -17,7 +17,7 @@ struct Radiance {
   }
   CASTRAY_INLINE Vec at(int slot) const { return {Float(x[slot]), Float(y[slot]), Float(z[slot])}; }
 
-  /// Adds the lanes in `m`, no two of which have the same slot.
+  /// Adds the lanes in `m`, in their order.
   CASTRAY_INLINE void add(const uint32_t* slot, Mask m, Vec v) {
     alignas(64) float r[width], g[width], b[width];
     store(r, v.x);

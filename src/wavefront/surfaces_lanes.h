@@ -99,6 +99,8 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
       resolve_values(scene, triangles, material, place, views ? &seen : nullptr, parameters.value);
     }
     const Float arrival = load(paths.arrival + i);
+    Mask lit = active & ~hit;
+    Vec arriving = escaped_radiance(scene.lights.environment, d, abs(arrival));
     if (see_emission) {
       const Mask counts = hit & (arrival > Float(0.f)) & has_traits(scene, material, trait_emits);
       if (any(counts)) {
@@ -109,11 +111,12 @@ CASTRAY_STAGE void surfaces(const Context& c, const Paths& paths, const Hits& hi
         if (scene.lights.cells.first) relative *= cell_share(scene.lights.cells, primitive, b1, b2);
         const Vec emission =
             found_emission(scene, material, parameters, front, arrival, t, towards, relative);
-        radiance.add(paths.names.slot + i, counts, throughput * emission);
+        arriving = select(counts, emission, arriving);
+        lit = lit | counts;
       }
     }
-    radiance.add(paths.names.slot + i, active & ~hit,
-                 throughput * escaped_radiance(scene.lights.environment, d, abs(arrival)));
+    // Of both at once: paths of one pixel are to be added in their order, whatever the width.
+    radiance.add(paths.names.slot + i, lit, throughput * arriving);
     const Mask kept = keep_misses ? active : hit;
     const int n = out.count;
     if constexpr (features & feature_materials) {
