@@ -194,4 +194,7 @@ Camera automatic_camera(const Scene& scene);
 /// order of its triangles is turned round with it, so what emitted outwards still does.
 Scene load_scene(const std::filesystem::path& file);
 
+/// Puts an image in latitude and longitude in place of the scene's environment. Throws InputError.
+void replace_environment(const std::filesystem::path& image, Scene& scene);
+
 }  // namespace castray

@@ -11,6 +11,7 @@
 
 #include "castray/error.h"
 #include "castray/image.h"
+#include "castray/scene.h"
 #include "cli/display_flags.h"
 #include "cli/memory_limit.h"
 #include "cli/render_passes.h"
@@ -21,7 +22,6 @@
 #include "core/text.h"
 #include "plan/option_names.h"
 #include "render/prepared_scene.h"
-#include "scene/environment_reader.h"
 
 namespace castray::cli {
 

@@ -13,9 +13,6 @@ namespace castray {
 /// InputError.
 void read_environment(const JsonNode& node, const std::filesystem::path& file, SceneBuilder& builder);
 
-/// Puts an image in latitude and longitude in place of the scene's environment. Throws InputError.
-void replace_environment(const std::filesystem::path& image, Scene& scene);
-
 // The keys that it, its "sky" and its "gradient" may have.
 inline const std::vector<std::string_view> environment_keys = {"radiance", "image", "sky",
                                                                "gradient", "scale", "rotation"};
