@@ -40,7 +40,6 @@ void add_outputs(Arguments& arguments, std::vector<std::filesystem::path>& files
 /// Throws InputError where two outputs are one file, or both the standard output: one would be lost.
 void check_distinct(const std::vector<std::filesystem::path>& files);
 
-/// Says on stderr which files were written.
 /// Adds that this program wrote the file.
 void add_writer(Metadata& metadata);
 
@@ -48,6 +47,7 @@ void add_writer(Metadata& metadata);
 /// samples from the first on, their number among the flags that render it again.
 Metadata metadata_of(const Film& film);
 
+/// Says on stderr which files were written.
 void tell_written(const std::vector<std::filesystem::path>& files);
 
 /// Says on stderr how many pixels of an image for display are not finite, and what is shown in their place.

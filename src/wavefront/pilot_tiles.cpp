@@ -198,11 +198,11 @@ std::vector<TechniqueFigures> figures_of(const std::vector<GroupRun>& runs, std:
   std::vector<TechniqueFigures> figures;
   for (const GroupRun& group : runs) {
     const TileRun& run = group.tiles[tile];
-    const double error = relative_error(run, run.samples, brightness);
+    const PixelErrors errors = pixel_errors(run, run.samples, brightness);
+    const double error = mean_of(errors);
     const double tiles = static_cast<double>(group.tiles.size());
     figures.push_back({mean_of_tile(run), error, run.samples > 1 ? relative_error(run, 1, brightness) : 0,
-                       error > 0 ? difference_error(run, brightness) / error : 0,
-                       lonely_error(pixel_errors(run, run.samples, brightness)),
+                       error > 0 ? difference_error(run, brightness) / error : 0, lonely_error(errors),
                        cost_of(group) / (tiles * samples_of(run))});
   }
   return figures;
