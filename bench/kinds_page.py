@@ -16,7 +16,8 @@ HEAD = """# Many kinds of scenes
 castray beside its own plain paths and other renderers on the scenes of [scenes/kinds](../scenes/kinds): what each shows, how
 many times as efficient castray is, 1 / (relMSE x seconds), and the best of them beside it at equal time, so that the pictures differ in noise alone. The worst
 scene comes first. `docs/make-kinds` makes this page.
-Where light comes by rare paths alone, as in corridor, cove and window_room, the references are noisy themselves.
+References are means of shared paths where a render shares, as plain ones are too noisy in cove, corridor and window_room
+([benchmarks](benchmarks.md#what-is-measured)).
 
 """
 

@@ -62,6 +62,10 @@ struct BenchScene {
   double equal_seconds = 0;
   Window crop;  ///< what the pictures show enlarged
   std::vector<BenchCurve> curves;
+
+  /// Whether an error was measured of which much may be the references' noise: it adds about a tenth of
+  /// theirs where rare bright samples are most of it.
+  bool needs_better_references() const;
 };
 
 struct BenchReport {

@@ -145,6 +145,7 @@ std::string section(const BenchScene& scene) {
       fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}, {}\u00d7{} pixels; reference: {}, relMSE {:.1e}. ",
                   escape_markup(scene.name), escape_markup(scene.file), scene.width, scene.height,
                   escape_markup(scene.reference), scene.reference_noise);
+  if (scene.needs_better_references()) text += "Errors are too small for this reference. ";
   text += scene.masked
               ? fmt::format("Errors are those of the {:.1f} % of the pixels that see no emitter directly.",
                             100 * scene.counted)

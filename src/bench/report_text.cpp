@@ -14,6 +14,10 @@ std::string seconds_text(std::optional<double> seconds) {
 std::string heading(const BenchScene& scene) {
   std::string text = fmt::format("{}, {}x{}, against {} (relMSE {:.1e})\n", scene.name, scene.width,
                                  scene.height, scene.reference, scene.reference_noise);
+  if (scene.needs_better_references())
+    text +=
+        "errors are too small beside the references' noise: these need more samples, or shared paths "
+        "(--reference-flags)\n";
   if (scene.masked)
     text +=
         fmt::format("errors away from directly seen emitters: {:.1f} % of the pixels\n", 100 * scene.counted);
@@ -75,6 +79,14 @@ std::string csv_field(const std::string& text) {
 }
 
 }  // namespace
+
+bool BenchScene::needs_better_references() const {
+  constexpr double enough = 0.2;
+  for (const BenchCurve& curve : curves)
+    for (const BenchPoint& point : curve.points)
+      if (point.relmse < enough * reference_noise) return true;
+  return false;
+}
 
 std::string kind_name(ContenderKind kind) {
   switch (kind) {

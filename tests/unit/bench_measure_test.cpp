@@ -84,6 +84,16 @@ TEST_CASE("a contender's error, slope and efficiency are measured as they are") 
   REQUIRE(*fast.fit->seconds_to(1e-3) == Approx(0.16 / 0.26 * 0.01 / 1e-3).epsilon(0.1));
 }
 
+TEST_CASE("a report says where its references are too noisy for the errors that it tells") {
+  BenchReport report = measured_report();  // the least relMSE is 0.01
+  const auto warns = [&report](double noise) {
+    report.scenes[0].reference_noise = noise;
+    return bench_table(report).find("references' noise") != std::string::npos;
+  };
+  REQUIRE(warns(0.1));
+  REQUIRE_FALSE(warns(0.02));
+}
+
 TEST_CASE("at equal time each contender renders with the spp that fit") {
   const BenchScene scene = measured_report().scenes[0];
   REQUIRE(scene.equal_seconds == Approx(0.16));  // the slow one's 4 spp
