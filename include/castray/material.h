@@ -71,7 +71,8 @@ struct Material {
   Vec3d absorption{0, 0, 0};     ///< dielectric, principled: inside it, over a unit of length of the files
   double alpha = 0;              ///< GGX width; 0 is perfectly smooth
   /// Conductor, principled, in [0,0.99]: where it is a, the width is alpha / sqrt(1 - a) in the direction in
-  /// which u grows, turned by so many degrees towards that of v, and alpha sqrt(1 - a) across it.
+  /// which u grows, turned by so many degrees towards that of v, and alpha sqrt(1 - a) across it. As factors
+  /// of an image any numbers: the product counts.
   double anisotropy = 0, anisotropy_rotation = 0;
   double metallic = 0;             ///< principled, [0,1]: the metal's share
   double transmission = 0;         ///< principled, [0,1]: the share of what is no metal that is glass
@@ -119,6 +120,11 @@ struct Material {
   /// Whether an image changes alpha.
   bool has_alpha_map() const {
     return map(SurfaceParameter::alpha).used() || map(SurfaceParameter::roughness).used();
+  }
+  /// Whether an image says how far from round a lobe is, or how it lies.
+  bool has_lobe_map() const {
+    return map(SurfaceParameter::anisotropy).used() || map(SurfaceParameter::anisotropy_rotation).used() ||
+           map(SurfaceParameter::anisotropy_direction).used();
   }
   /// Whether a principled one is all metal, maybe under a coat.
   bool is_bare_metal() const { return metallic == 1 && !map(SurfaceParameter::metallic).used(); }

@@ -25,8 +25,12 @@ enum class SurfaceParameter : uint8_t {
   coverage,
   normal,  ///< the shading normal in the frame of the texture coordinates, (r,g,b) = (1 + n) / 2
   bump,    ///< the shading normal by a height
+  anisotropy,
+  anisotropy_rotation,
+  anisotropy_direction,  ///< where lobes are wide, (r,g) = (1 + d) / 2 in the frame of the texture
+                         ///< coordinates
 };
-inline constexpr int surface_parameters = 14;
+inline constexpr int surface_parameters = 17;
 
 /// What a surface parameter reads of an image: its colour (numbers take the luminance), or one channel.
 enum class Channel : uint8_t { color, red, green, blue, alpha, luminance };

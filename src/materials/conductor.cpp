@@ -31,6 +31,7 @@ const MaterialDescriptor& conductor_descriptor() {
                                 alpha_key(),
                                 anisotropy_key(),
                                 anisotropy_rotation_key(),
+                                optional_in_hash(anisotropy_direction_key()),
                                 multiple_scattering_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
         return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |

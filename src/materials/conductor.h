@@ -44,11 +44,11 @@ struct Conductor {
   static const MaterialDescriptor& descriptor() { return conductor_descriptor(); }
   static Conductor make(const SurfaceValues<double>& values, const Material& m, const LobeTables& lobes) {
     const Vec3d reflectance = values.color(slot_ks);
-    Conductor metal{
-        Vec3<T>(reflectance),
-        Vec3<T>(m.eta),
-        Vec3<T>(m.k),
-        {static_cast<T>(values.at(slot_alpha)), m.correlated_masking, static_cast<T>(lobe_aspect(m))}};
+    Conductor metal{Vec3<T>(reflectance),
+                    Vec3<T>(m.eta),
+                    Vec3<T>(m.k),
+                    {static_cast<T>(values.at(slot_alpha)), m.correlated_masking,
+                     static_cast<T>(lobe_aspect(m, values))}};
     if (!lobes.own) return metal;
     metal.scattered = Vec3<T>(scattered_again(m.has_index() ? mean_fresnel(m) : reflectance, *lobes.own));
     metal.albedo = lobes.own;

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "materials/ggx.h"
+#include "materials/lobe_albedo.h"
 #include "materials/material_list.h"
+#include "materials/surface_values.h"
 
 namespace castray {
 
@@ -14,6 +16,8 @@ template <class... Models>
 std::vector<const MaterialDescriptor*> descriptors_of(const std::variant<Models...>*) {
   return {&Models::descriptor()...};
 }
+
+double aspect_of(double anisotropy) { return std::sqrt(1 - std::min(anisotropy, double{most_anisotropy})); }
 
 }  // namespace
 
@@ -120,6 +124,8 @@ MaterialKey anisotropy_key() {
           .kind = MaterialKey::Kind::number,
           .field = &Material::anisotropy,
           .range = {.least = 0, .greatest = 0.99},
+          .parameter = SurfaceParameter::anisotropy,
+          .slot = slot_anisotropy,
           .text = "1 - the ratio of the lobe's widths, whose geometric mean is alpha [0]."};
 }
 
@@ -128,9 +134,19 @@ MaterialKey anisotropy_rotation_key() {
           .kind = MaterialKey::Kind::number,
           .field = &Material::anisotropy_rotation,
           .range = float_range,
+          .parameter = SurfaceParameter::anisotropy_rotation,
           .text =
               "Degrees from the direction in which u grows, towards that of v, to the one in which the "
               "lobe is wide [0]."};
+}
+
+MaterialKey anisotropy_direction_key() {
+  return {.name = "anisotropy_direction",
+          .kind = MaterialKey::Kind::image_only,
+          .parameter = SurfaceParameter::anisotropy_direction,
+          .text =
+              "The direction in which the lobe is wide, before it is turned, in the frame of the texture "
+              "coordinates; of the normal map's form."};
 }
 
 MaterialKey multiple_scattering_key() {
@@ -154,7 +170,16 @@ AnisotropyConflict anisotropy_conflict(const Material& m) {
   return several_widths_over_base ? AnisotropyConflict::roughness_image : AnisotropyConflict::none;
 }
 
-double lobe_aspect(const Material& m) { return has_stretched_lobe(m) ? std::sqrt(1 - m.anisotropy) : 1; }
+double lobe_aspect(const Material& m) { return has_stretched_lobe(m) ? aspect_of(m.anisotropy) : 1; }
+
+double lobe_aspect(const Material& m, const SurfaceValues<double>& values) {
+  const bool by_image = has_stretched_lobe(m) && m.map(SurfaceParameter::anisotropy).used();
+  return by_image ? aspect_of(values.at(slot_anisotropy)) : lobe_aspect(m);
+}
+
+LobeWidths lobe_widths(const Material& m, double alpha) {
+  return {alpha, lobe_aspect(m), has_stretched_lobe(m) && m.map(SurfaceParameter::anisotropy).used()};
+}
 
 bool has_narrow_lobe(const Material& m) {
   constexpr double narrow_below = 0.1;  // where paths of one's own begin to be worth more than shared ones

@@ -30,6 +30,7 @@ struct MaterialKey {
 
 class LobeAlbedo;
 struct LobeTables;
+struct LobeWidths;
 template <class T>
 struct SurfaceValues;
 
@@ -72,6 +73,7 @@ MaterialKey absorption_key();
 /// Of metals, and of lobes of principled materials, that are not round.
 MaterialKey anisotropy_key();
 MaterialKey anisotropy_rotation_key();
+MaterialKey anisotropy_direction_key();
 
 /// Of metals whose facets reflect light more than once.
 MaterialKey multiple_scattering_key();
@@ -92,8 +94,14 @@ bool has_stretched_lobe(const Material& material);
 enum class AnisotropyConflict { none, emission, roughness_image };
 AnisotropyConflict anisotropy_conflict(const Material& material);
 
-/// Ggx::aspect of a material's lobes; 1 where it is smooth, whose direction nothing shows.
+/// Ggx::aspect of a material's lobes; 1 where it is smooth, whose direction nothing shows. Where an image
+/// says it, the least that may be.
 double lobe_aspect(const Material& material);
+/// The same where the values are known.
+double lobe_aspect(const Material& material, const SurfaceValues<double>& values);
+
+/// By what the albedo of a material's lobe of this alpha is tabulated.
+LobeWidths lobe_widths(const Material& material, double alpha);
 
 /// Whether GGX lobes of this material are nearly as narrow as a mirror's, though not smooth.
 bool has_narrow_lobe(const Material& material);

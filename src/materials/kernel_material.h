@@ -43,11 +43,19 @@ enum ParameterSlot : int {
   slot_sheen = 14,
   slot_clearcoat = 15,
   slot_clearcoat_roughness = 16,
-  parameter_floats = 17
+  slot_anisotropy = 17,
+  parameter_floats = 18
 };
 
 /// The greatest of a pair's numbers, which stands for 1. The first has the lower 16 bits.
 inline constexpr float most_of_pair = 65535;
+
+/// Greatest anisotropy.
+inline constexpr float most_anisotropy = 0.99f;
+
+/// Of the square of what an image of directions says; less, between texels that say opposite ones, counts
+/// for none.
+inline constexpr float least_direction2 = 1e-6f;
 
 /// LobeAlbedo's table.
 inline constexpr int albedo_intervals = 128;
@@ -133,7 +141,9 @@ struct KernelMap {
 struct KernelDetail {
   const KernelMap* maps;
   uint32_t count;
-  const KernelMap *normal, *bump;  ///< that bend the shading normal; or null
+  const KernelMap *normal, *bump;     ///< that bend the shading normal; or null
+  const KernelMap *turn, *direction;  ///< that turn lobes, `turn` in whole turns; or null
+  int32_t stretch_slot;  ///< where an image of slot_anisotropy says how far from round a lobe is; else 0
   MaterialType type;
   float value[parameter_floats];  ///< as the scene has them
   float least_alpha;              ///< where an image says less
@@ -153,6 +163,7 @@ struct MaterialTables {
   const KernelMaterial *indices, *absorbing, *pairs, *glass;
   bool filtered;   ///< whether a map reads the pixels' footprints
   bool stretched;  ///< whether some material has trait_stretched; likewise
+  bool stretched_by_images;
   bool scatters_again;
 };
 

@@ -40,6 +40,10 @@ float stretch_of(const Material& m) {
   return static_cast<float>((1 / r - r) / 2);
 }
 
+int stretch_slot(const Material& m) {
+  return m.type == MaterialType::conductor ? slot_stretch : slot_layered_stretch;
+}
+
 /// What no image and no table changes; of material `index`.
 KernelMaterial constants_of(const Scene& scene, const Material& m, std::size_t index) {
   KernelMaterial k{};
@@ -69,7 +73,7 @@ void put_values(const Material& m, const MaterialValues& values, KernelMaterial&
   k.value[slot_metal_sheen] = pack(values[slot_metallic], values[slot_sheen]);
   k.value[slot_coat] = pack(values[slot_clearcoat], values[slot_clearcoat_roughness]);
   if (!(k.traits & trait_stretched)) return;
-  const int slot = m.type == MaterialType::conductor ? slot_stretch : slot_layered_stretch;
+  const int slot = stretch_slot(m);
   k.stretch = stretch_of(m);
   k.value[slot] = k.stretch;
   k.value[slot + 1] = 0;
@@ -114,8 +118,8 @@ void KernelMaterials::look_up_lobe(const Material& m, KernelMaterial& k, Materia
     values[slot_alpha] = LobeAlbedoRows::alpha_of(row);
     descriptor.finish(m, LobeAlbedoRows::all()[row], values.data());
   } else if (has_lobe_table(m)) {
-    const LobeWidths widths{values[slot_alpha], lobe_aspect(m)};
-    const LobeAlbedo& lobe = lobes_.of(widths.first, widths.second);
+    const LobeWidths widths = lobe_widths(m, values[slot_alpha]);
+    const LobeAlbedo& lobe = lobes_.of(widths);
     k.albedo = albedo_offset(widths, lobe);
     descriptor.finish(m, lobe, values.data());
   }
@@ -129,7 +133,7 @@ void KernelMaterials::look_up_coat(const Material& m, KernelMaterial& k, Materia
         static_cast<double>(clearcoat_row(m.clearcoat_roughness)) / LobeAlbedoRows::steps;
   } else if (m.type == MaterialType::principled) {
     const double alpha = clearcoat_alpha(m.clearcoat_roughness);
-    k.clearcoat_albedo = albedo_offset({alpha, 1}, lobes_.of(alpha));
+    k.clearcoat_albedo = albedo_offset({alpha}, lobes_.of({alpha}));
   }
 }
 
@@ -137,13 +141,22 @@ void KernelMaterials::add_maps(const Scene& scene, const Material& m, KernelDeta
                                KernelMaterial& k) {
   detail.normal = single_map(scene, m.map(SurfaceParameter::normal), 1);
   detail.bump = single_map(scene, m.map(SurfaceParameter::bump), static_cast<float>(1 / scene.unit));
+  if (k.traits & trait_stretched) add_lobe_maps(scene, m, detail);
   std::vector<KernelMap> maps = maps_of(scene, m);
-  if (maps.empty() && !detail.normal && !detail.bump) return;
+  if (maps.empty() && !detail.normal && !detail.bump && !detail.turn && !detail.direction) return;
   maps_.push_back(std::move(maps));
   detail.maps = maps_.back().data();
   detail.count = static_cast<std::uint32_t>(maps_.back().size());
   details.push_back(detail);
   k.detail = static_cast<std::uint32_t>(details.size());
+}
+
+void KernelMaterials::add_lobe_maps(const Scene& scene, const Material& m, KernelDetail& detail) {
+  const auto turns = static_cast<float>(m.anisotropy_rotation / 360);
+  detail.turn = single_map(scene, m.map(SurfaceParameter::anisotropy_rotation), turns, turns);
+  detail.direction = single_map(scene, m.map(SurfaceParameter::anisotropy_direction), 1);
+  if (m.map(SurfaceParameter::anisotropy).used()) detail.stretch_slot = stretch_slot(m);
+  stretched_by_images_ |= m.has_lobe_map();
 }
 
 MaterialTables KernelMaterials::tables() const {
@@ -166,6 +179,7 @@ MaterialTables KernelMaterials::tables() const {
           .glass = where_any([](const KernelMaterial& m) { return m.glass_share > 0; }),
           .filtered = filtered_,
           .stretched = has_any(trait_stretched),
+          .stretched_by_images = stretched_by_images_,
           .scatters_again = has_any(trait_scatters_again)};
 }
 
@@ -184,11 +198,13 @@ std::uint32_t KernelMaterials::albedo_rows() {
   return *first_row_;
 }
 
-const KernelMap* KernelMaterials::single_map(const Scene& scene, const TextureMap& map, float gain) {
+const KernelMap* KernelMaterials::single_map(const Scene& scene, const TextureMap& map, float gain,
+                                             float base) {
   if (!map.used()) return nullptr;
   KernelMap k = map_of(scene, map);
   if (k.channel == Channel::color) k.channel = Channel::luminance;
   k.gain *= gain;
+  k.base *= base;
   return &maps_.emplace_back(1, k).front();
 }
 

@@ -35,20 +35,22 @@ class KernelMaterials {
   void look_up_lobe(const Material& m, KernelMaterial& k, MaterialValues& values);
   void look_up_coat(const Material& m, KernelMaterial& k, MaterialValues& values);
   void add_maps(const Scene& scene, const Material& m, KernelDetail& detail, KernelMaterial& k);
+  /// Those that say how lobes lie, and how far from round they are.
+  void add_lobe_maps(const Scene& scene, const Material& m, KernelDetail& detail);
   std::uint32_t albedo_offset(const LobeWidths& widths, const LobeAlbedo& lobe);
   std::vector<KernelMap> maps_of(const Scene& scene, const Material& m);
   KernelMap map_of(const Scene& scene, const TextureMap& map);
   KernelTexture kernel_texture(const Texture& texture);
 
   std::uint32_t albedo_rows();  ///< the offset of LobeAlbedoRows
-  /// A map that bends normals; null where there is none.
-  const KernelMap* single_map(const Scene& scene, const TextureMap& map, float gain);
+  /// A map that bends normals or turns lobes, its gain and base times these; null where there is none.
+  const KernelMap* single_map(const Scene& scene, const TextureMap& map, float gain, float base = 1);
 
   LobeAlbedos lobes_;
-  std::map<LobeWidths, std::uint32_t> albedo_offsets_;  ///< by alpha
+  std::map<LobeWidths, std::uint32_t> albedo_offsets_;
   std::optional<std::uint32_t> first_row_;
   std::deque<std::vector<KernelMap>> maps_;  ///< of each of `details`
-  bool filtered_ = false;
+  bool filtered_ = false, stretched_by_images_ = false;
   std::deque<std::array<std::uint8_t, 8>> small_images_;  ///< of fewer than four bytes
 };
 

@@ -66,6 +66,25 @@ LobeAlbedo::LobeAlbedo(const LobeAlbedo& low, const LobeAlbedo& high, double t) 
   find_mean();
 }
 
+LobeAlbedo::LobeAlbedo(const LobeAlbedo& one, const LobeAlbedo& other) {
+  // What is left is linear in F0: a + lost for 0, and lost for 1.
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const Node &p = one.nodes_[i], &q = other.nodes_[i];
+    const double lost = std::min(p.lost, q.lost);
+    nodes_[i] = {std::min(p.a + p.lost, q.a + q.lost) - lost, lost};
+  }
+  find_mean();
+}
+
+LobeAlbedo least_albedo(const LobeWidths& widths) {
+  LobeAlbedo least(widths.alpha, widths.aspect);
+  if (!widths.to_round) return least;
+  constexpr int steps = 3;
+  for (int i = 0; i < steps; ++i)
+    least = {least, LobeAlbedo(widths.alpha, std::pow(widths.aspect, static_cast<double>(i) / steps))};
+  return least;
+}
+
 void LobeAlbedo::find_mean() {
   mean_ = {};
   for (int i = 0; i < intervals; ++i) {  // Simpson's rule is exact for c times a linear function

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "castray/vec.h"
@@ -31,6 +31,9 @@ class LobeAlbedo {
   /// not round (Ggx::aspect), a and lost are the least of all azimuths, so that what is left is never too
   /// much; five times as long.
   explicit LobeAlbedo(double alpha, double aspect = 1);
+
+  /// What both leave at least, for any F0.
+  LobeAlbedo(const LobeAlbedo& one, const LobeAlbedo& other);
 
   /// The table between `low` (t = 0) and `high` (t = 1).
   LobeAlbedo(const LobeAlbedo& low, const LobeAlbedo& high, double t);
@@ -90,14 +93,24 @@ inline Vec3d base_under(const Vec3d& kd, const Vec3d& f0, const LobeAlbedo& coat
 /// less than least_left_for_base, it is only part of the light.
 Vec3d scattered_again(const Vec3d& mean_fresnel, const LobeAlbedo& lobe);
 
-/// Of a lobe: alpha, and Ggx::aspect.
-using LobeWidths = std::pair<double, double>;
+/// Of a lobe: alpha, and Ggx::aspect; or of all lobes from that aspect to a round one.
+struct LobeWidths {
+  double alpha, aspect = 1;
+  bool to_round = false;
+
+  auto operator<=>(const LobeWidths&) const = default;
+};
+
+/// Of all lobes of those widths, what they leave at least.
+LobeAlbedo least_albedo(const LobeWidths& widths);
 
 /// Tables, each computed once. References stay valid.
 class LobeAlbedos {
  public:
-  const LobeAlbedo& of(double alpha, double aspect = 1) {
-    return tables_.try_emplace({alpha, aspect}, alpha, aspect).first->second;
+  const LobeAlbedo& of(const LobeWidths& widths) {
+    const auto found = tables_.find(widths);
+    return found != tables_.end() ? found->second
+                                  : tables_.emplace(widths, least_albedo(widths)).first->second;
   }
 
  private:

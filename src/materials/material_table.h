@@ -17,9 +17,9 @@ class MaterialTable {
       SurfaceValues<double> values(m);
       LobeTables& lobes = lobes_.emplace_back();
       if (has_lobe_table(m) && !has_lobe_rows(m))
-        lobes.own = &albedos_.of(values.at(slot_alpha), lobe_aspect(m));
+        lobes.own = &albedos_.of(lobe_widths(m, values.at(slot_alpha)));
       if (m.type == MaterialType::principled && !has_clearcoat_rows(m))
-        lobes.clearcoat = &albedos_.of(clearcoat_alpha(m.clearcoat_roughness));
+        lobes.clearcoat = &albedos_.of({clearcoat_alpha(m.clearcoat_roughness)});
       bsdfs_.push_back(make(m, values, lobes_of(bsdfs_.size(), values)));
     }
   }

@@ -46,6 +46,7 @@ const MaterialDescriptor& principled_descriptor() {
            alpha_key(),
            optional_in_hash(anisotropy_key()),
            optional_in_hash(anisotropy_rotation_key()),
+           optional_in_hash(anisotropy_direction_key()),
            multiple_scattering_key(),
            {.name = "sheen",
             .kind = Kind::number,

@@ -71,7 +71,8 @@ struct Principled {
         .metal = m.has_index() ? static_cast<T>(metallic) : T(0),
         .eta = Vec3<T>(m.eta),
         .k = Vec3<T>(m.k),
-        .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking, static_cast<T>(lobe_aspect(m))},
+        .ggx = {static_cast<T>(values.at(slot_alpha)), m.correlated_masking,
+                static_cast<T>(lobe_aspect(m, values))},
         .coat = {static_cast<T>(clearcoat_alpha(values.at(slot_clearcoat_roughness))), m.correlated_masking},
         .albedo = lobes.own,
         .coat_albedo = lobes.clearcoat};

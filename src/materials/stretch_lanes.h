@@ -19,6 +19,34 @@ CASTRAY_INLINE Stretch stretch_along(const Frame& frame, const Vec& along, Float
   return {fma(x, x, -(y * y)) * scale, Float(2.f) * x * y * scale};
 }
 
+/// How lobes lie before the shading normal is known: how far from round they are, and cosine and sine of the
+/// angle from where u grows to where they are wide.
+struct Lie {
+  Float strength, x, y;
+};
+
+/// Sets what images say of it. `value`: of the points, in which resolve_values leaves strengths.
+inline __attribute__((noinline)) void lie_by_images(const MaterialTables& tables, const TriangleTable& table,
+                                                    const Uint& material, const TrianglePlace& at,
+                                                    const Mask& stretched, const Float* value, Lie& lie) {
+  const MapInputs in = map_inputs(table, at);
+  for_each_detail(tables, material, stretched & in.has_uv, [&](const KernelDetail& d, const Mask& here) {
+    if (d.stretch_slot) lie.strength = select(here, value[d.stretch_slot], lie.strength);
+    if (d.turn) {
+      const SinCos turn = sincos_turn(fraction(map_value(*d.turn, in.u, in.v).x));
+      lie.x = select(here, turn.cos, lie.x);
+      lie.y = select(here, turn.sin, lie.y);
+    }
+    if (d.direction) {
+      const Vec w = map_normal(*d.direction, in.u, in.v);
+      const Mask turns = here & (fma(w.x, w.x, w.y * w.y) > Float(least_direction2));
+      const Float x = fma(lie.x, w.x, -(lie.y * w.y)), y = fma(lie.y, w.x, lie.x * w.y);
+      lie.x = select(turns, x, lie.x);
+      lie.y = select(turns, y, lie.y);
+    }
+  });
+}
+
 /// Lays the lobes of materials that have such ones: sets `value`'s slot_stretch, or slot_layered_stretch, for
 /// the frame of the shading normal, which is on the viewer's side as `facing` is. `front`: that is the
 /// geometric normal's side.
@@ -38,10 +66,11 @@ __attribute__((noinline)) void lay_lobes(const MaterialTables& tables, const Tri
     handedness = select(d.valid, d.handedness, handedness);
   }
   const float* turn = fields_of(tables.materials, &KernelMaterial::turn);
-  const Vec v = cross(outward, u) * handedness,
-            along = fma(v, gather(turn + 1, material), u * gather(turn, material));
-  const Stretch laid = stretch_along(make_frame(shading_normal), along,
-                                     gather(tables.materials, &KernelMaterial::stretch, material));
+  Lie lie{gather(tables.materials, &KernelMaterial::stretch, material), gather(turn, material),
+          gather(turn + 1, material)};
+  if (tables.stretched_by_images) lie_by_images(tables, table, material, at, stretched, value, lie);
+  const Vec v = cross(outward, u) * handedness, along = fma(v, lie.y, u * lie.x);
+  const Stretch laid = stretch_along(make_frame(shading_normal), along, lie.strength);
   const Mask metal =
       gather(tables.materials, &KernelMaterial::type, material) == Uint((uint32_t)MaterialType::conductor);
   const auto set = [&](const Mask& lanes, int slot) {

@@ -48,7 +48,7 @@ struct SurfaceValues {
     } else {
       const T factor = map_number(texture, map, u, v);
       const T power = key.kind == MaterialKey::Kind::squared ? factor * factor : factor;
-      at(*key.slot) = std::clamp(at(*key.slot) * power, T(0), T(1));
+      at(*key.slot) = std::clamp(at(*key.slot) * power, T(0), T(key.range.greatest));
     }
   }
 

@@ -68,6 +68,12 @@ CASTRAY_INLINE void for_each_detail(const MaterialTables& tables, Uint material,
   }
 }
 
+/// How far from round a lobe of this anisotropy is; see slot_stretch.
+CASTRAY_INLINE Float stretch_of(Float anisotropy) {
+  const Float a = min(anisotropy, Float(most_anisotropy));
+  return Float(0.5f) * a / sqrt(Float(1.f) - a);
+}
+
 /// Replaces a material's own values, the vertex_floats from `value` on, by those of the points in its lanes;
 /// where its maps filter, by the means over what the pixels see, `seen`, unless that is null.
 inline __attribute__((noinline)) void resolve_values(const MaterialTables& tables,
@@ -82,6 +88,7 @@ inline __attribute__((noinline)) void resolve_values(const MaterialTables& table
     apply_maps(d, ~0u, in, here, seen, own);
     own[slot_alpha] = max(own[slot_alpha], Float(d.least_alpha));
     finish_values(all_models, d, tables.albedos, own);
+    if (d.stretch_slot) own[d.stretch_slot] = stretch_of(own[slot_anisotropy]);
     for (int k = 0; k < vertex_floats; ++k) value[k] = select(here, own[k], value[k]);
   });
 }

@@ -102,9 +102,12 @@ void add_material(Hash& hash, const Material& m) {
   const Material usual;
   hash.add(m.type);
   for (const MaterialKey& key : descriptor_of(m.type).keys) {
-    if (key.optional_in_hash && value_of(key, m) == value_of(key, usual)) continue;
+    const bool has_map = key.parameter && m.map(*key.parameter).used();
+    if (key.optional_in_hash && !has_map && value_of(key, m) == value_of(key, usual)) continue;
     hash.add(value_of(key, m));
-    if (key.parameter) add_map(hash, m.map(*key.parameter));
+    // Lobes got images after films were made.
+    if (has_map || (key.parameter && *key.parameter < SurfaceParameter::anisotropy))
+      add_map(hash, m.map(*key.parameter));
   }
   hash.add(m.correlated_masking);
   if (m.has_back()) hash.add(m.back);

@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "geometry/placement.h"
 #include "materials/bent_normal.h"
+#include "materials/lobe_turn.h"
 #include "materials/material_table.h"
 #include "materials/surface_values.h"
 
@@ -158,8 +159,8 @@ class Surfaces {
     const auto move = uv_derivatives<T>(scene_, place.triangle, placement);
     const Vec3<T> u = move ? normalize(move->du) : make_frame(normal).tangent;
     const Vec3<T> v = cross(normal, u) * (move ? move->handedness : T(1));
-    const T turn = T(m.anisotropy_rotation) * pi<T> / 180;
-    const Vec3<T> along = u * std::cos(turn) + v * std::sin(turn);
+    const auto [x, y] = lobe_turn(scene_, m, place);
+    const Vec3<T> along = u * x + v * y;
     const Vec3<T> tangent = normalize(along - shading_normal * dot(along, shading_normal));
     return {tangent, cross(shading_normal, tangent), shading_normal};
   }

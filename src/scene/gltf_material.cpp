@@ -10,6 +10,7 @@
 #include "materials/descriptor.h"
 #include "materials/media.h"
 #include "materials/texture.h"
+#include "scene/gltf_lobe.h"
 #include "scene/gltf_value.h"
 #include "scene/names.h"
 
@@ -26,6 +27,7 @@ struct GltfTextures {
   const tinygltf::Value* gloss = find_extension(m.extensions, "KHR_materials_pbrSpecularGlossiness");
   const tinygltf::Value* clearcoat = find_extension(m.extensions, "KHR_materials_clearcoat");
   const tinygltf::Value* specular = find_extension(m.extensions, "KHR_materials_specular");
+  const tinygltf::Value* stretch = find_extension(m.extensions, "KHR_materials_anisotropy");
 
   GltfTextureUse base =
       gloss ? texture_use(gloss, "diffuseTexture") : texture_use(m.pbrMetallicRoughness.baseColorTexture);
@@ -36,12 +38,13 @@ struct GltfTextures {
   GltfTextureUse coat_roughness = texture_use(clearcoat, "clearcoatRoughnessTexture");
   GltfTextureUse specular_color = texture_use(specular, "specularColorTexture");
   GltfTextureUse specular_factor = texture_use(specular, "specularTexture");
+  GltfTextureUse direction = texture_use(stretch, "anisotropyTexture");
 
   /// By the first image that is turned, else by the first.
   GltfUvs uvs() const {
     const GltfTextureUse* chosen = nullptr;
-    for (const GltfTextureUse* use :
-         {&base, &surface, &normal, &emission, &coat, &coat_roughness, &specular_color, &specular_factor})
+    for (const GltfTextureUse* use : {&base, &surface, &normal, &emission, &coat, &coat_roughness,
+                                      &specular_color, &specular_factor, &direction})
       if (use->used() && (!chosen || (use->transform.turns() && !chosen->transform.turns()))) chosen = use;
     if (!chosen) return {};
     return {chosen->uv_set, chosen->transform.turns() ? chosen->transform : UvTransform{}};
@@ -84,6 +87,14 @@ class GltfMaterialReader {
 
   static double component(const std::vector<double>& values, std::size_t i) {
     return i < values.size() ? values[i] : 1;
+  }
+
+  /// Of a number in one channel; not used where there is no image.
+  TextureMap map_of(const GltfTextureUse& use, Channel channel) {
+    TextureMap map =
+        make_map(document_, use, uvs_, ColorSpace::linear, index_, builder_).value_or(TextureMap());
+    map.channel = channel;
+    return map;
   }
 
   bool set_map(Parameter parameter, const GltfTextureUse& use, ColorSpace space,
@@ -279,25 +290,33 @@ class GltfMaterialReader {
     out_.sheen = std::clamp(luminance(color), 0.0, 1.0);
   }
 
-  /// The lobe's widths: alpha across its direction, and by the square of the strength nearer to 1 along it.
-  /// So with an image of the roughness their ratio, which castray has for all of a surface, would vary.
+  /// Where images say widths of the lobe, there is no base below it: see AnisotropyConflict.
   void set_anisotropy() {
-    const tinygltf::Value* stretch = find_extension(m_.extensions, "KHR_materials_anisotropy");
-    const double strength = unit(number_in(stretch, "anisotropyStrength", 0), "anisotropyStrength");
-    if (strength == 0) return;
-    const bool emits = anisotropy_conflict(out_) == AnisotropyConflict::emission;
-    if (emits || out_.has_alpha_map()) {
-      warn(fmt::format("anisotropy is left out beside {}", emits ? "emission" : "an image of the roughness"));
-      return;
+    const tinygltf::Value* stretch = textures_.stretch;
+    GltfNumber strength{unit(number_in(stretch, "anisotropyStrength", 0), "anisotropyStrength")};
+    if (strength.factor == 0) return;
+    if (anisotropy_conflict(out_) == AnisotropyConflict::emission)
+      return warn("anisotropy is left out beside emission");
+    GltfNumber roughness{std::sqrt(out_.alpha), out_.map(Parameter::roughness)};
+    GltfNumber metallic{out_.metallic, out_.map(Parameter::metallic)};
+    strength.map = map_of(textures_.direction, Channel::blue);
+    for (GltfNumber* number : {&roughness, &metallic, &strength}) fold_constant(builder_, *number);
+    const bool is_metal = metallic.factor == 1 && !metallic.varies();
+    if (roughness.varies() && !is_metal)
+      return warn("anisotropy is left out beside an image of the roughness of what is not all metal");
+    if (strength.varies() && !(is_metal && lie_alike(roughness, strength))) {
+      warn(is_metal ? "the anisotropy's strength is the same everywhere: its image lies otherwise than the "
+                      "roughness's"
+                    : "the anisotropy's strength is the same everywhere, as it is on what is not all metal");
+      strength.map = {};
     }
-    if (texture_use(stretch, "anisotropyTexture").used())
-      warn("anisotropyTexture is left out: the strength and the rotation are the same everywhere");
-    constexpr double least_ratio = 0.01;
-    const double along = out_.alpha + (1 - out_.alpha) * strength * strength;
-    const double ratio = std::clamp(out_.alpha / along, least_ratio, 1.0);
-    out_.alpha = along * std::sqrt(ratio);
-    out_.anisotropy = 1 - ratio;
+    out_.metallic = metallic.factor;
+    out_.map(Parameter::metallic) = metallic.map;
+    out_.map(Parameter::roughness) = roughness.map;
+    set_lobe(roughness, strength, builder_, out_);
     out_.anisotropy_rotation = number_in(stretch, "anisotropyRotation", 0) * (180 / pi<double>);
+    set_map(Parameter::anisotropy_direction, textures_.direction, ColorSpace::linear, Channel::color,
+            TextureMeaning::normals);
   }
 
   void set_clearcoat() {

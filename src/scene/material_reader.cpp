@@ -203,7 +203,8 @@ class MaterialReader {
   }
 
   static TextureMeaning meaning_of(const MaterialKey& key) {
-    if (key.parameter == SurfaceParameter::normal) return TextureMeaning::normals;
+    if (key.parameter == SurfaceParameter::normal || key.parameter == SurfaceParameter::anisotropy_direction)
+      return TextureMeaning::normals;
     return key.parameter == SurfaceParameter::bump ? TextureMeaning::heights : TextureMeaning::amounts;
   }
 

@@ -68,10 +68,12 @@ constexpr MapKey map_keys[] = {
     {"map_kn", MtlMap::normal},
     {"map_bump", MtlMap::bump},
     {"bump", MtlMap::bump},
+    {"map_aniso", MtlMap::anisotropy},
+    {"map_anisor", MtlMap::anisotropy_rotation},
 };
 
 /// Images that would change the picture, but are not done.
-constexpr std::string_view maps_not_done[] = {"map_aniso", "map_anisor", "disp", "map_disp", "decal"};
+constexpr std::string_view maps_not_done[] = {"disp", "map_disp", "decal"};
 
 class MtlReader {
  public:

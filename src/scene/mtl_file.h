@@ -26,9 +26,11 @@ enum class MtlMap : unsigned char {
   clearcoat_roughness,
   dissolve,
   normal,
-  bump
+  bump,
+  anisotropy,
+  anisotropy_rotation
 };
-inline constexpr int mtl_maps = 12;
+inline constexpr int mtl_maps = 14;
 
 /// What an MTL file says of one material; scene/mtl_material.h says what that means.
 struct MtlMaterial {

@@ -201,8 +201,8 @@ class Meaning {
 
   /// Disney's (Burley 2012): the ratio of the lobe's widths is 1 - 0.9 aniso, and anisor a share of a turn.
   void read_anisotropy() {
-    const double amount = mtl_.anisotropy.value_or(0);
-    if (amount == 0) return;
+    const double strength = mtl_.anisotropy.value_or(0);
+    if (strength == 0 && !is_mapped(MtlMap::anisotropy)) return;
     const bool has_key =
         material_.type == MaterialType::conductor || material_.type == MaterialType::principled;
     if (!has_key || anisotropy_conflict(material_) != AnisotropyConflict::none)
@@ -211,8 +211,9 @@ class Meaning {
           "aniso is done for metals, and for what has Pm, Ps or Pc and neither Ke nor "
           "an image of its roughness",
           Harm::changes_picture);
-    material_.anisotropy = 0.9 * amount;
-    material_.anisotropy_rotation = 360 * mtl_.anisotropy_rotation.value_or(0);
+    material_.anisotropy = 0.9 * amount(mtl_.anisotropy, anisotropy, MtlMap::anisotropy);
+    material_.anisotropy_rotation =
+        360 * amount(mtl_.anisotropy_rotation, anisotropy_rotation, MtlMap::anisotropy_rotation);
   }
 
   void set_conductor(const Vec3d& color, SurfaceParameter source) {

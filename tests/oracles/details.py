@@ -71,6 +71,12 @@ CASES = {
         None,
         lambda: twosided({"type": "principled", "base_color": {"type": "rgb", "value": [0.9, 0.7, 0.5]}, "metallic": 1.0,
                           "roughness": 0.3, "anisotropic": 0.8})),
+    "layers_brushed_image": (
+        {"type": "principled", "kd": [0.9, 0.7, 0.5], "metallic": 1, "roughness": 0.3,
+         "anisotropy": {"image": "heights.png", "factor": 0.9}},
+        None,
+        lambda: twosided({"type": "principled", "base_color": {"type": "rgb", "value": [0.9, 0.7, 0.5]}, "metallic": 1.0,
+                          "roughness": 0.3, "anisotropic": bitmap("heights.png", raw=True)})),
     "pair": (
         {"type": "two_sided", "front": {"type": "diffuse", "kd": {"image": "colours.png"}},
          "back": {"type": "conductor", "reflectance": {"eta": [0.2, 0.9, 2.5], "k": [3.4, 1.5, 0.8]}, "roughness": 0.5}},

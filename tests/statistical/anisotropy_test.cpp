@@ -5,6 +5,7 @@
 #include "castray_blocks.h"
 #include "core/warp.h"
 #include "instanced.h"
+#include "materials/texture.h"
 
 using namespace castray;
 using namespace castray::test;
@@ -87,6 +88,37 @@ Material layered(double alpha, double anisotropy, double degrees) {
   return m;
 }
 
+/// Puts an image of `pixels`, in a row, repeated every 0.7 of the texture coordinates, on a parameter.
+void put_image(Scene& scene, SurfaceParameter parameter, const std::vector<Vec3f>& pixels) {
+  Image image(static_cast<int>(pixels.size()), 1);
+  image.pixels = pixels;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    if (scene.materials[i].name == "brushed") {
+      Material m = scene.materials[i];
+      m.map(parameter).texture = static_cast<int>(scene.textures.size());
+      m.map(parameter).scale = {1.4f, 1.4f};
+      scene.materials[i] = m;
+    }
+  scene.textures.push_back(make_texture("lobes", image));
+}
+
+Vec3f grey(float x) { return {x, x, x}; }
+
+/// What images hold of a direction at this angle from u towards v.
+Vec3f towards(double degrees) {
+  const double turn = degrees * pi<double> / 180;
+  return {static_cast<float>((1 + std::cos(turn)) / 2), static_cast<float>((1 + std::sin(turn)) / 2), 0.5f};
+}
+
+/// The gutter of a metal whose lobes images of all three kinds change.
+Scene gutter_by_images(const Material& metal) {
+  Scene scene = gutter(metal, 0);
+  put_image(scene, SurfaceParameter::anisotropy, {grey(1), grey(0.6f), grey(0)});
+  put_image(scene, SurfaceParameter::anisotropy_rotation, {grey(0), grey(0.5f), grey(1)});
+  put_image(scene, SurfaceParameter::anisotropy_direction, {towards(0), towards(80), towards(-30)});
+  return scene;
+}
+
 }  // namespace
 
 TEST_CASE("brushed metal is as castRay has it", "[statistical]") {
@@ -123,4 +155,37 @@ TEST_CASE("lobes turn with the texture coordinates, and from u towards v", "[sta
   const BlockScores scores = block_scores(blocks_of(other, as_reference(wavefront_options(4, 100)), 12),
                                           expected.mean, expected.variance);
   CHECK(scores.largest > score_limit(scores.count, 1e-4));
+}
+
+TEST_CASE("lobes by images are as castRay has them", "[statistical]") {
+  const Scene scene = gutter_by_images(brushed(0.2, 0.9, 90));
+  const Expected expected(scene, wavefront_options(16), 12);
+  check_same_bytes(scene, wavefront_options(2));
+  expected.check("shared", scene, wavefront_options(4), 12);
+  expected.check("instances, some mirrored", as_instances(scene, kinds_of_places()), wavefront_options(4),
+                 12);
+  const Scene layers = gutter_by_images(layered(0.2, 0.9, 90));
+  Expected(layers, wavefront_options(8), 12).check("layers", layers, plain(wavefront_options(8)), 12);
+}
+
+// The same numbers by images that say the same everywhere: but for rounding the same picture.
+TEST_CASE("images of lobes mean what their numbers mean") {
+  const auto picture = [](const Scene& scene) {
+    return blocks_of(scene, as_reference(wavefront_options(2)), 1)[0];
+  };
+  const auto difference = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      largest = std::max(largest, std::abs(a[i] - b[i]) / (a[i] + 0.01));
+    return largest;
+  };
+  const std::vector<double> numbers = picture(gutter(brushed(0.2, 0.8, 50), 20));
+  Scene by_values = gutter(brushed(0.2, 1.6, 100), 20);
+  put_image(by_values, SurfaceParameter::anisotropy, {grey(0.5f)});
+  put_image(by_values, SurfaceParameter::anisotropy_rotation, {grey(0.5f)});
+  CHECK(difference(numbers, picture(by_values)) < 1e-3);
+  Scene by_direction = gutter(brushed(0.2, 0.8, 20), 20);
+  put_image(by_direction, SurfaceParameter::anisotropy_direction, {towards(30)});
+  CHECK(difference(numbers, picture(by_direction)) < 1e-3);
+  CHECK(difference(numbers, picture(gutter(brushed(0.2, 0.8, 20), 20))) > 0.05);
 }

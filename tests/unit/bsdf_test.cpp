@@ -294,6 +294,28 @@ TEST_CASE("no base below a lobe that is not round reflects more than it leaves, 
       }
 }
 
+TEST_CASE("no base does so where an image says how far from round the lobe is", "[bsdf]") {
+  for (const double alpha : {0.15, 0.5}) {
+    Material m{
+        .name = {}, .type = MaterialType::principled, .kd = Vec3d(1), .ks = Vec3d(0.2), .alpha = alpha};
+    m.anisotropy = 0.95;
+    m.map(SurfaceParameter::anisotropy).texture = 0;
+    const MaterialTable<double> table({m});
+    for (const double anisotropy : {0.0, 0.2, 0.5, 0.8, 0.95}) {
+      SurfaceValues<double> values(m);
+      values.at(slot_anisotropy) = anisotropy;
+      const Bsdf<double> bsdf = table.at(0, values);
+      for (const double theta : {0.1, 0.8, 1.3, 1.5})
+        for (const double phi : {0.0, 0.8, 1.5}) {
+          const double albedo = albedo_of_white(bsdf, direction(theta, phi));
+          CAPTURE(alpha, anisotropy, theta, phi, albedo);
+          CHECK(albedo <= 1 + 2e-3);
+          CHECK(albedo >= (theta < 1 ? 0.83 : 0.3));
+        }
+    }
+  }
+}
+
 TEST_CASE("a principled material all of metal by its index is the conductor under its coat", "[bsdf]") {
   Material gold = conductor(0.2);
   gold.eta = {0.16, 0.42, 1.38}, gold.k = {4, 2.04, 1.74};

@@ -211,6 +211,65 @@ TEST_CASE("KHR_materials_anisotropy: alpha across the lobe's direction, and alon
   CHECK(m.anisotropy_rotation == Approx(90));
 }
 
+TEST_CASE("KHR_materials_anisotropy: red and green are the direction, blue is a factor of the strength") {
+  const auto read = [](const std::string& texels, int width, const Json& pbr, const std::string& rough = {}) {
+    GltfFile file;
+    Json surface = pbr;
+    if (!rough.empty())
+      surface["metallicRoughnessTexture"] = {{"index", file.add_texture(png_file(2, 8, 2, {rough}))}};
+    const Json extension = {
+        {"anisotropyStrength", 0.5},
+        {"anisotropyTexture", {{"index", file.add_texture(png_file(width, 8, 2, {texels}))}}}};
+    file.add_node({{"mesh", file.add_square(file.add(
+                                "materials", {{"pbrMetallicRoughness", surface},
+                                              {"extensions", {{"KHR_materials_anisotropy", extension}}}}))}});
+    return read_gltf_scene(file.glb());
+  };
+  const auto check_at = [](const Scene& scene, int texel_number, double across, double strength) {
+    const Material& m = scene.materials[0];
+    const auto value = [&](SurfaceParameter p) {
+      const Texture& image = scene.textures[static_cast<std::size_t>(m.map(p).texture)];
+      return image.bytes[static_cast<std::size_t>(texel_number)] / 255.0;
+    };
+    const double alpha = m.alpha * std::pow(value(SurfaceParameter::roughness), 2);
+    const double ratio = 1 - m.anisotropy * value(SurfaceParameter::anisotropy);
+    CHECK(alpha / std::sqrt(ratio) == Approx(across + (1 - across) * strength * strength).epsilon(0.03));
+    CHECK(alpha * std::sqrt(ratio) == Approx(across).epsilon(0.03));
+  };
+  const std::string same("\x00\x80\x80\xff\x80\x80", 6), two("\xff\x80\xff\xff\x80\x80", 6);
+  const double half = 0x80 / 255.0;
+
+  // One strength everywhere needs no images, even where there is a base below.
+  const Scene one = read(same, 2, {{"roughnessFactor", 0.5}, {"metallicFactor", 0.5}});
+  CHECK(one.warnings.empty());
+  CHECK_FALSE(one.materials[0].map(SurfaceParameter::anisotropy).used());
+  CHECK(one.materials[0].map(SurfaceParameter::anisotropy_direction).used());
+  const double along = 0.25 + 0.75 * std::pow(0.5 * half, 2);
+  CHECK(1 - one.materials[0].anisotropy == Approx(0.25 / along));
+
+  const Scene metal = read(two, 2, {{"roughnessFactor", 0.5}});
+  CHECK(metal.warnings.empty());
+  check_at(metal, 0, 0.25, 0.5);
+  check_at(metal, 1, 0.25, 0.5 * half);
+
+  const std::string roughness("\x00\xff\xff\x00\x80\xff", 6);
+  const Scene rough = read(two, 2, {{"roughnessFactor", 0.8}}, roughness);
+  CHECK(rough.warnings.empty());
+  check_at(rough, 0, 0.64, 0.5);
+  check_at(rough, 1, std::pow(0.8 * half, 2), 0.5 * half);
+
+  const Scene blend = read(two, 2, {{"roughnessFactor", 0.5}, {"metallicFactor", 0.5}});
+  REQUIRE(blend.warnings.size() == 1);
+  CHECK(blend.warnings[0].message.find("strength is the same everywhere") != std::string::npos);
+  CHECK(blend.materials[0].anisotropy > 0);
+  CHECK_FALSE(blend.materials[0].map(SurfaceParameter::anisotropy).used());
+
+  const Scene over_base = read(two, 2, {{"roughnessFactor", 0.5}, {"metallicFactor", 0.5}}, roughness);
+  REQUIRE(over_base.warnings.size() == 1);
+  CHECK(over_base.warnings[0].message.find("left out beside an image of the roughness") != std::string::npos);
+  CHECK(over_base.materials[0].anisotropy == 0);
+}
+
 TEST_CASE("KHR_texture_transform: scale and offset are the map's, a turn is the mesh's") {
   const auto with = [](GltfFile& file, const Json& transform) -> Json {
     return {{"pbrMetallicRoughness",

@@ -248,6 +248,12 @@ TEST_CASE("aniso of a metal is the ratio of its lobe's widths, anisor a share of
   CHECK(layered.warning().empty());
   CHECK(layered.material().type == MaterialType::principled);
   CHECK(layered.material().anisotropy == 0.45);
+
+  Read mapped("Pm 1\nPr .5\nanisor .25\nmap_aniso grey.pfm\nmap_anisor -imfchan r grey.pfm\n");
+  CHECK(mapped.material().map(anisotropy).used());
+  CHECK(mapped.material().anisotropy == 0.9);
+  CHECK(mapped.material().map(anisotropy_rotation).channel == Channel::red);
+  CHECK(mapped.material().anisotropy_rotation == 90);
 }
 
 TEST_CASE("what is not done and would be seen is told") {
@@ -255,7 +261,7 @@ TEST_CASE("what is not done and would be seen is told") {
       "aniso is done for metals, and for what has Pm, Ps or Pc and neither Ke nor an image of its roughness";
   CHECK(Read("aniso .5\n").warning() == needs_layers);
   CHECK(Read("Pm .5\nKe 1 1 1\naniso .5\n").warning() == needs_layers);
-  CHECK(Read("map_aniso grey.pfm\n").warning() == "map_aniso is not done");
+  CHECK(Read("map_aniso grey.pfm\n").warning() == needs_layers);
   CHECK(Read("Pc 0\nPs 0\naniso 0\nPcr .03\nKa 1 1 1\nsharpness 60\n").warning().empty());
   CHECK(Read("disp grey.pfm\n").warning() == "disp is not done");
 }
