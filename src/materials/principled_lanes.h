@@ -78,8 +78,9 @@ struct Principled : ModelDefaults {
     const Bsdf& b;
     Vec wo, f0, base, left_o;
     Vec scattered;  ///< see principled.h; only set where some material has it
-    Float sheen, coat, coat_f0, coat_alpha, coat_share, lobe_share;
-    Uint coat_albedo;
+    Float sheen, coat, coat_f0{0.f}, coat_alpha{1.f}, coat_share{0.f}, lobe_share;
+    Uint coat_albedo{0u};
+    bool coated, based;  ///< whether some lane has a coat, or a base; else they are skipped
 
     CASTRAY_INLINE Layers(const Bsdf& bsdf, Vec from) : b(bsdf), wo(from) {
       const auto [metallic, cloth] = unpack(b.own[0]);
@@ -89,14 +90,20 @@ struct Principled : ModelDefaults {
       base = base_under(b.albedos, b.albedo, b.kd, b.ks) * rest;
       sheen = cloth * rest;
       coat = covered;
+      coated = any(b.is(type) & (covered > Float(0.f)));
+      based = any(b.is(type) & (max_component(base) > Float(0.f)));
+      left_o = based ? left_by_lobe(b.albedos, b.albedo, b.ks, wo.z) : black();
+      if (coated) find_coat(roughness);
+      if (b.scatters_again) find_scattered(metallic);
+      find_shares();
+    }
+
+    CASTRAY_INLINE void find_coat(Float roughness) {
       coat_f0 = gather(b.materials, &KernelMaterial::clearcoat_f0, b.record);
       coat_alpha = max(square(roughness), Float(least_clearcoat_alpha));
       const Float rows = gather(b.materials, &KernelMaterial::clearcoat_rows, b.record);
       coat_albedo = gather(b.materials, &KernelMaterial::clearcoat_albedo, b.record) +
                     to_uint(fma(roughness, rows, Float(0.5f))) * uint32_t{albedo_floats};
-      left_o = left_by_lobe(b.albedos, b.albedo, b.ks, wo.z);
-      if (b.scatters_again) find_scattered(metallic);
-      find_shares();
     }
 
     CASTRAY_INLINE void find_scattered(Float metallic) {
@@ -118,28 +125,31 @@ struct Principled : ModelDefaults {
       if (b.scatters_again) diffuse = diffuse + luminance(scattered) * lost(wo) * mean_lost();
       const Float below = fma(diffuse, through_sheen, Float(1.f) - through_sheen);
       const Float reflected = Float(1.f) - through_coat;
-      coat_share = max(reflected / fma(through_coat, lobe + below, reflected), reflected * quarter);
+      if (coated)
+        coat_share = max(reflected / fma(through_coat, lobe + below, reflected), reflected * quarter);
       lobe_share = max(lobe / (lobe + below), lobe * quarter) * (Float(1.f) - coat_share);
     }
 
     CASTRAY_INLINE BsdfValue evaluate(Vec wi) const {
       const Vec h = normalize(wo + wi);
       const Float wo_h = dot(wo, h);
-      const Lobe outer = lobe(coat_alpha, h, wi);
       const Lobe inner =
           b.stretched ? lobe(ggx_widths(b.alpha, b.stretch[0], b.stretch[1]), h, wi) : lobe(b.alpha, h, wi);
-      Vec diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
+      Vec diffuse = black();
+      if (based) diffuse = base * left_o * left_by_lobe(b.albedos, b.albedo, b.ks, wi.z) * Float(1.f / pi);
       if (b.scatters_again) diffuse = diffuse + scattered * (lost(wo) * lost(wi) * Float(1.f / pi));
       const Mask smooth = b.smooth();
       const Vec under = diffuse + select(smooth, black(), fresnel(wo_h) * inner.value);
       const Float cloth = sheen * schlick(black(), wo_h).x;
       const Vec through = fma(under, left_by_sheen(wo) * left_by_sheen(wi), Vec{cloth, cloth, cloth});
+      const Float base_share = Float(1.f) - coat_share - lobe_share,
+                  of_base = base_share * wi.z * Float(1.f / pi),
+                  of_lobe = select(smooth, Float(0.f), lobe_share * inner.pdf);
+      if (!coated) return {through * wi.z, of_base + of_lobe};
+      const Lobe outer = lobe(coat_alpha, h, wi);
       const Float reflected = coat * schlick(coat_color(), wo_h).x * outer.value;
       const Vec f = fma(through, left_by_coat(wo) * left_by_coat(wi), Vec{reflected, reflected, reflected});
-      const Float base_share = Float(1.f) - coat_share - lobe_share;
-      const Float pdf = coat_share * outer.pdf + base_share * wi.z * Float(1.f / pi) +
-                        select(smooth, Float(0.f), lobe_share * inner.pdf);
-      return {f * wi.z, pdf};
+      return {f * wi.z, coat_share * outer.pdf + of_base + of_lobe};
     }
 
     CASTRAY_INLINE Vec fresnel(Float cosine) const {
@@ -155,6 +165,7 @@ struct Principled : ModelDefaults {
       return Float(1.f) - sheen * albedo;
     }
     CASTRAY_INLINE Float left_by_coat(Vec w) const {
+      if (!coated) return Float(1.f);
       const Vec left = left_by_lobe(b.albedos, coat_albedo, coat_color(), w.z);
       return Float(1.f) - coat * (Float(1.f) - left.x);
     }
