@@ -154,6 +154,15 @@ void choose_caustics(Plan& plan, double gain_of_light_paths) {
   plan.kernel = kernel_name(plan);
 }
 
+void choose_number_of_light_paths(Plan& plan, double gain_of_twice) {
+  constexpr double much = 1.25;  // bright samples that no pilot met are an error that light paths leave
+  if (!plan.light_paths || !(gain_of_twice > much)) return;
+  plan.twice_the_light_paths = true;
+  plan.light_paths_per_pixel *= 2;
+  plan.kernel +=
+      fmt::format(", twice as many paths from lights (by a pilot, {} as efficient)", times(gain_of_twice));
+}
+
 void choose_reconstruction(Plan& plan, std::optional<double> gain) {
   plan.gain_of_reconstruction = gain.value_or(0);
   plan.reconstruct = plan.gain_of_reconstruction > 1;

@@ -17,6 +17,7 @@ struct Plan {
   bool mis = false;                          ///< light and BSDF sampling share emission
   bool light_paths = false;                  ///< bring the caustics that the camera sees directly
   double light_paths_per_pixel = 1;          ///< of the full image, for each sample
+  bool twice_the_light_paths = false;        ///< these are twice as many as usual
   int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
   int few_suffixes = 0;                      ///< where so many may do: beside mirrors and glass; or 0
   int light_points = 0;                      ///< shared by each tile
@@ -54,6 +55,9 @@ void choose_lights_by_regions(Plan& plan, std::size_t regions, double gain);
 /// Takes what does better, if light paths make a render that many times as efficient as leaving their
 /// caustics to chance.
 void choose_caustics(Plan& plan, double gain_of_light_paths);
+
+/// Takes twice as many light paths if these are that many times as efficient, and that is much.
+void choose_number_of_light_paths(Plan& plan, double gain_of_twice);
 
 /// Keeps reconstruction if it is more efficient than means, that many times by a pilot; nothing if none was
 /// asked.

@@ -218,6 +218,10 @@ Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) 
   gains.sharing_by_lights = by_light.sharing();
   gains.few_by_lights = by_light.few;
   gains.reconstruction_by_lights = gain_of_reconstruction(rest.shared, caustics.by_light, rays, q.list);
+  const double fewer = caustics.by_light / 2;
+  const Products twice = products_of(rest, rest, fewer, fewer, 2 * rays, q.open.few);
+  if (twice.plain > 0) gains.twice_with_plain = by_light.plain / twice.plain;
+  if (twice.shared > 0) gains.twice_with_shared = by_light.shared / twice.shared;
   if (!q.both || !(max_component(q.splats.radiance) > 0)) return gains;
   const Ways chance = q.tried ? Ways{figures[q.ways], figures.back(), q.narrow_coats} : rest;
   const double left = q.tried ? left_by_sharing(rest, chance, caustics.by_chance) : 1;

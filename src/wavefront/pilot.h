@@ -23,6 +23,8 @@ struct Gains {
   bool few_by_lights = false, few_by_chance = false;  ///< whether these are with half of the suffixes
   double sharing_error = 1;        ///< the standard error of the gain of sharing, as a factor
   bool by_single_samples = false;  ///< all of this: the image was too small to try four of each tile
+  /// Of twice as many paths from lights over as many as were tried.
+  std::optional<double> twice_with_plain, twice_with_shared;
   /// Of images from differences of pixels over those from means, at few samples and with shared paths.
   std::optional<double> reconstruction_by_lights, reconstruction_by_chance;
 };

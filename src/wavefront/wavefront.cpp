@@ -56,6 +56,7 @@ class Wavefront final : public PreparedIntegrator {
   /// Instruction sets count rays differently in the last digit, so a near tie may fall either way.
   std::string decisions(const Job& job) const override {
     std::string items = plan_.light_paths ? "; light-paths=on" : "";
+    if (plan_.twice_the_light_paths) items += "; light-path-number=twice";
     items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
     if (plan_.suffixes > 0 && plan_.suffixes == plan_.few_suffixes)
       items += fmt::format("; suffixes={}", plan_.suffixes);
@@ -152,7 +153,11 @@ class Wavefront final : public PreparedIntegrator {
                             by_lights ? gains.reconstruction_by_lights : gains.reconstruction_by_chance);
     const std::optional<double>& sharing = by_lights ? gains.sharing_by_lights : gains.sharing_by_chance;
     const bool few = by_lights ? gains.few_by_lights : gains.few_by_chance;
-    if (open.sharing && sharing) choose_by_pilot(plan_, *sharing, gains.sharing_error, few, gains.by_single_samples);
+    if (open.sharing && sharing)
+      choose_by_pilot(plan_, *sharing, gains.sharing_error, few, gains.by_single_samples);
+    const std::optional<double>& twice =
+        plan_.suffixes > 0 ? gains.twice_with_shared : gains.twice_with_plain;
+    if (by_lights && twice) choose_number_of_light_paths(plan_, *twice);
   }
 
   const BvhStats& tree_stats() const { return data_.bvh ? data_.bvh->stats() : data_.instances->stats(); }

@@ -372,11 +372,14 @@ LightPathsJob pretended_light_paths(float radiance, float by_chance, std::uint64
 }
 
 /// Of a pilot of a square image that may choose everything.
-std::optional<double> gain_of_light_paths(int side, const RenderJob& job, const LightPathsJob& light_paths) {
+Gains gains_with_light_paths(int side, const RenderJob& job, const LightPathsJob& light_paths) {
   KernelOptions options = sharing();
   options.light_paths = true;
-  return find_gains({side, side, true, 2, job}, options, {.caustics = true, .sharing = true}, light_paths)
-      .light_paths;
+  return find_gains({side, side, true, 2, job}, options, {.caustics = true, .sharing = true}, light_paths);
+}
+
+std::optional<double> gain_of_light_paths(int side, const RenderJob& job, const LightPathsJob& light_paths) {
+  return gains_with_light_paths(side, job, light_paths).light_paths;
 }
 
 }  // namespace
@@ -398,6 +401,36 @@ TEST_CASE("the pilot's gain of light paths is the ratio of all variances times t
   const RenderJob job = pretended(0.3f, 0.3f, 0, 64000, 320);
   CHECK_FALSE(gain_of_light_paths(512, job, pretended_light_paths(0, 1, 1)));
   CHECK_FALSE(gain_of_light_paths(56, job, pretended_light_paths(1, 1, 1)));
+}
+
+TEST_CASE("twice as many light paths halve the variance that these bring, and cost twice their rays") {
+  const double rest = 0.3 * 0.3 / 3 / 1.01, plain_rays = 5;
+  for (const float radiance : {0.5f, 2.f})
+    for (const double rays : {1.0, 4.0}) {
+      const Gains gains = gains_with_light_paths(
+          512, pretended(0.3f, 0.3f, 0, 64000, static_cast<std::uint64_t>(plain_rays * tile_pixels)),
+          pretended_light_paths(radiance, 1000, static_cast<std::uint64_t>(rays)));
+      const double brightness = 1 + 0.1 * radiance;
+      const double light = 0.1 * radiance * radiance * 3 / (brightness * brightness + 0.01);
+      const double expected =
+          (3 * rest + light) * (plain_rays + rays) / ((3 * rest + light / 2) * (plain_rays + 2 * rays));
+      CAPTURE(radiance, rays);
+      REQUIRE(gains.twice_with_plain);
+      CHECK(*gains.twice_with_plain == Approx(expected).epsilon(0.02));
+      CHECK(gains.twice_with_shared);
+    }
+  const RenderJob job = pretended(0.3f, 0.3f, 0, 64000, 320);
+  CHECK_FALSE(gain_of_light_paths(56, job, pretended_light_paths(1, 1, 1)));
+
+  const auto paths = [](bool light_paths, double gain) {
+    Plan plan;
+    plan.light_paths = light_paths;
+    choose_number_of_light_paths(plan, gain);
+    return plan.light_paths_per_pixel;
+  };
+  CHECK(paths(true, 1.3) == 2);
+  CHECK(paths(true, 1.1) == 1);
+  CHECK(paths(false, 1.3) == 1);
 }
 
 TEST_CASE("where tiles find caustics by chance, the pilot counts what sharing leaves of their variance") {

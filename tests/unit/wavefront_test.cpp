@@ -122,6 +122,40 @@ TEST_CASE("threads, crops and sample ranges do not show in a wavefront render") 
   }
 }
 
+TEST_CASE("a pilot takes twice as many light paths for a lamp in a bulb, and the image is the same") {
+  const Scene scene = standard_scene("kinds/lamp_in_bulb");
+  RenderOptions options = small("auto");
+  options.width = options.height = 64;
+  const Film whole = render(scene, options).film;
+  CHECK_THAT(whole.key, Catch::Contains("; light-path-number=twice"));
+  check_parts(scene, options, whole);
+
+  // Means over the image, whose light comes by light paths. |t| > 4.5 in 1 of 4000 tests (22 degrees)
+  const auto means = [&](bool twice) {
+    options.reuse.automatic = false;
+    options.caustics = twice ? Switch::automatic : Switch::on;  // which asks no pilot
+    options.spp = 1;
+    double sum = 0, squares = 0;
+    constexpr int seeds = 12;
+    for (int seed = 1; seed <= seeds; ++seed) {
+      options.seed = static_cast<std::uint32_t>(seed);
+      const Film film = render(scene, options).film;
+      REQUIRE(film.light_paths(0, 0) == (twice ? 2u : 1u) * 64 * 64);
+      double mean = 0;
+      for (const Vec3f& pixel : film.image().pixels) mean += luminance(pixel) / (64 * 64);
+      sum += mean;
+      squares += mean * mean;
+    }
+    const double mean = sum / seeds;
+    return std::pair(mean, (squares / seeds - mean * mean) / (seeds - 1));
+  };
+  const auto [once, variance_once] = means(false);
+  const auto [twice, variance_twice] = means(true);
+  CAPTURE(once, twice, variance_once, variance_twice);
+  CHECK(std::abs(once - twice) < 4.5 * std::sqrt(variance_once + variance_twice));
+  CHECK(variance_once + variance_twice < 0.01 * once * once);
+}
+
 TEST_CASE("threads, crops, sample ranges and instruction sets do not show in caustics by light paths") {
   const Scene scene = standard_scene("kinds/lamp_in_bulb");
   RenderOptions options = small("auto");
