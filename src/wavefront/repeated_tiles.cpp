@@ -24,11 +24,10 @@ void copy_pixels(const TileResult& part, int from, TileResult& result, int to) {
 
 }  // namespace
 
-RepeatedTiles::RepeatedTiles(const TileJob& job, const PixelEdges& edges, int reach, int repeats)
-    : job_(job) {
+RepeatedTiles::RepeatedTiles(const TileJob& job, const PixelEdges& edges, int repeats) : job_(job) {
   for (int tile = 0; tile < job.tiles; ++tile) {
     const int x = job.x + tile * tile_size, y = job.y;
-    const bool sees_edge = edges.any(x - reach, y - reach, x + tile_size + reach, y + tile_size + reach);
+    const bool sees_edge = edges.any(x, y, x + tile_size, y + tile_size);
     const std::uint32_t takes = sees_edge ? static_cast<std::uint32_t>(repeats) : 1;
     for (std::uint32_t repeat = 0; repeat < takes; ++repeat)
       places_[static_cast<std::size_t>(count_++)] = {x, y, job.grid_x + tile, job.grid_y, repeat, takes};

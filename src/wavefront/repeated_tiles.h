@@ -12,11 +12,12 @@ namespace castray {
 /// A job in which each tile that sees an edge is repeated: its sample is the mean of the repeats. In images
 /// from differences most of the error is there, where pixels have noise of their own and surfaces are near
 /// each other. What is repeated depends on the scene's shapes alone, never on what samples bring, so that
-/// means stay unbiased; and a pixel that sees an edge has as many repeats in every sample.
+/// means stay unbiased. A pixel that sees an edge has as many repeats in every sample: also where edges of
+/// tiles are ragged it stays in its tile's square (ragged_tiles_lanes.h), the only place looked at.
 class RepeatedTiles {
  public:
-  /// `reach`: how far pixels lie outside their tiles at most. `repeats`: most_edge_samples at most.
-  RepeatedTiles(const TileJob& job, const PixelEdges& edges, int reach, int repeats);
+  /// `repeats`: most_edge_samples at most.
+  RepeatedTiles(const TileJob& job, const PixelEdges& edges, int repeats);
 
   bool any_repeated() const { return count_ > job_.tiles; }
 

@@ -88,7 +88,7 @@ void WavefrontRun::render_band(int row, const SampleRange& samples, const Sample
           // it is one for both halves, as these pixels have no part in differences
           job.edge_sample = s * static_cast<std::uint64_t>(edge_samples_);
           job.edge_seed = options_.seed;
-          render_job(job, grid.reach, options, workplace, result);
+          render_job(job, options, workplace, result);
           job.sample = s;
           if (differences_)
             add_tiles(job, grid.reach, result, map, film, stats);
@@ -101,13 +101,13 @@ void WavefrontRun::render_band(int row, const SampleRange& samples, const Sample
   stats.rays += result.rays;
 }
 
-void WavefrontRun::render_job(const TileJob& job, int reach, const KernelOptions& options,
-                              Workplace& workplace, TileResult& result) const {
+void WavefrontRun::render_job(const TileJob& job, const KernelOptions& options, Workplace& workplace,
+                              TileResult& result) const {
   const auto render = [&](const TileJob& part, TileResult& to) {
     render_tiles_(scene_, options, part, workplace.scratch.get(), to);
   };
   if (edge_samples_ == 1) return render(job, result);
-  const RepeatedTiles tiles(job, edges_, reach, edge_samples_);
+  const RepeatedTiles tiles(job, edges_, edge_samples_);
   if (!tiles.any_repeated()) return render(job, result);
   TileResult part = workplace.repeats.result(true);
   tiles.render([&](const TileJob& some) { render(some, part); }, part, result);

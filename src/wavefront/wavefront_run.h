@@ -25,7 +25,7 @@ class WavefrontRun {
 
  private:
   /// Renders a job, its tiles that see an edge several times.
-  void render_job(const TileJob& job, int reach, const KernelOptions& options, Workplace& workplace,
+  void render_job(const TileJob& job, const KernelOptions& options, Workplace& workplace,
                   TileResult& result) const;
 
   /// All that the tiles of any sample's grid reach.
