@@ -139,6 +139,11 @@ struct Material {
   /// Whether light passes unbent, so that a ray may take no notice of it. What shines by itself does not: the
   /// share of it that is there would not depend on the place alone.
   bool is_window() const { return type == MaterialType::dielectric && thin && !emits(); }
+  /// Whether it is one through which colours pass differently well.
+  bool tints() const {
+    const bool grey = transmittance.x == transmittance.y && transmittance.y == transmittance.z;
+    return is_window() && (!grey || map(SurfaceParameter::transmittance).used());
+  }
   /// Whether its surface bounds a body that light goes into.
   bool bounds_body() const { return type == MaterialType::dielectric && !thin; }
   bool absorbs() const { return bounds_body() && max_component(absorption) > 0; }

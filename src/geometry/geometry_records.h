@@ -45,6 +45,9 @@ struct PartialTriangles {
   const uint32_t* triangles;  ///< a bit for each, the lowest first; null: all are wholly there
   float (*coverage)(const void* self, const PartialHit& hit);
   const void* self;
+  /// Multiplies colours by what is left of them where a ray passes, over what is of the one that passes best.
+  /// Null: of all colours the same is left everywhere.
+  void (*tint)(const void* self, const PartialHit& hit, float* red, float* green, float* blue);
   bool met_once;  ///< a ray meets each of them once: the tree has none twice
 };
 

@@ -43,6 +43,8 @@ class InstanceGeometry {
 
   CASTRAY_INLINE bool thins() const { return there_.thins(); }
 
+  CASTRAY_INLINE void tint(const TintBatch& rays) const { instances_tint(tree_, there_.partial, rays); }
+
   CASTRAY_INLINE Placed placement(const SurfaceHit& hit) const { return {{tree_.instances, hit.instance}}; }
 
   CASTRAY_INLINE SurfacePoint surface_point(const Vec& /*o*/, const Vec& /*d*/, const SurfaceHit& hit) const {

@@ -70,4 +70,8 @@ void instances_occluded(const InstanceTree& tree, const PartlyThere* there, cons
   find_occluded(tree, begin_thinning(there->partial, rays), rays);
 }
 
+void instances_tint(const InstanceTree& tree, const PartialTriangles& partial, const TintBatch& rays) {
+  find_occluded(tree, Tinting::of(partial, rays), segments_of(rays));
+}
+
 }  // namespace castray::CASTRAY_ISA

@@ -14,4 +14,7 @@ void instances_closest(const InstanceTree& tree, const PartlyThere* there, const
 /// Finds whether each ray hits anything that is there.
 void instances_occluded(const InstanceTree& tree, const PartlyThere* there, const ShadowBatch& rays);
 
+/// What the windows that rays pass leave of colours.
+void instances_tint(const InstanceTree& tree, const PartialTriangles& partial, const TintBatch& rays);
+
 }  // namespace castray::CASTRAY_ISA

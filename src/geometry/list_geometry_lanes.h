@@ -31,6 +31,9 @@ class ListGeometry {
   /// Whether they tell what partial triangles leave of their light (ShadowBatch::kept).
   CASTRAY_INLINE bool thins() const { return false; }
 
+  /// Multiplies colours by what the windows leave that rays pass.
+  CASTRAY_INLINE void tint(const TintBatch& /*rays*/) const {}
+
   /// How what tables hold of a hit's triangle is turned to scene space.
   CASTRAY_INLINE InPlace placement(const SurfaceHit& /*hit*/) const { return {}; }
 

@@ -42,11 +42,15 @@ struct PartialHits {
   CASTRAY_INLINE PartialHits from(uint32_t ray) const { return {partial, directions.from(ray), instance}; }
   CASTRAY_INLINE PartialHits in(uint32_t at) const { return {partial, directions, at}; }
 
+  CASTRAY_INLINE PartialHit at(uint32_t ray, uint32_t triangle, float b1, float b2) const {
+    const RayDirections& d = directions;
+    return {triangle, instance, b1, b2, {d.x[ray], d.y[ray], d.z[ray]}};
+  }
+
   /// 1 where the triangle is not partial.
   CASTRAY_INLINE float coverage(uint32_t ray, uint32_t triangle, float b1, float b2) const {
     if (!is_partial(partial, triangle)) return 1;
-    const RayDirections& d = directions;
-    return partial.coverage(partial.self, {triangle, instance, b1, b2, {d.x[ray], d.y[ray], d.z[ray]}});
+    return partial.coverage(partial.self, at(ray, triangle, b1, b2));
   }
 };
 
@@ -113,6 +117,41 @@ struct Thinning {
     return !(kept[ray] > 0);
   }
 };
+
+/// None; but rays lose colours at those which they pass, but for those on which they end.
+struct Tinting {
+  PartialHits hits;
+  float *red, *green, *blue;
+  const uint32_t *end, *end_instance;
+
+  CASTRAY_INLINE static Tinting of(const PartialTriangles& partial, const TintBatch& rays) {
+    return {{partial, RayDirections::of(rays)}, rays.red, rays.green, rays.blue, rays.end, rays.end_instance};
+  }
+  CASTRAY_INLINE Tinting from(uint32_t ray) const {
+    return {hits.from(ray),        red + ray,
+            green + ray,           blue + ray,
+            end ? end + ray : end, end_instance ? end_instance + ray : end_instance};
+  }
+  CASTRAY_INLINE Tinting in(uint32_t instance) const {
+    return {hits.in(instance), red, green, blue, end, end_instance};
+  }
+  CASTRAY_INLINE bool operator()(uint32_t ray, uint32_t triangle, float b1, float b2) const {
+    if (is_partial(hits.partial, triangle) && !is_end(ray, triangle))
+      hits.partial.tint(hits.partial.self, hits.at(ray, triangle, b1, b2), red + ray, green + ray,
+                        blue + ray);
+    return false;
+  }
+
+ private:
+  CASTRAY_INLINE bool is_end(uint32_t ray, uint32_t triangle) const {
+    return end && end[ray] == triangle && (hits.instance == no_hit || end_instance[ray] == hits.instance);
+  }
+};
+
+/// As shadow rays.
+CASTRAY_INLINE ShadowBatch segments_of(const TintBatch& r) {
+  return {r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, r.t_max, r.room, r.count};
+}
 
 /// That of rays which have met nothing.
 CASTRAY_INLINE Thinning begin_thinning(const PartialTriangles& partial, const ShadowBatch& rays) {

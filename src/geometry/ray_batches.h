@@ -34,4 +34,13 @@ struct ShadowBatch {
                           ///< occluded; null: they occlude where they are there in the world
 };
 
+/// Rays of which is asked what the windows that they pass leave of colours (PartialTriangles::tint).
+struct TintBatch {
+  const float *ox, *oy, *oz, *dx, *dy, *dz, *t_max;
+  uint8_t* room;  ///< for a byte each
+  uint32_t count;
+  float *red, *green, *blue;                               ///< multiplied
+  const uint32_t *end = nullptr, *end_instance = nullptr;  ///< the triangles on which they end; or null
+};
+
 }  // namespace castray

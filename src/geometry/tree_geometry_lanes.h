@@ -26,6 +26,8 @@ class TreeGeometry {
 
   CASTRAY_INLINE bool thins() const { return there_.thins(); }
 
+  CASTRAY_INLINE void tint(const TintBatch& rays) const { bvh_tint(tree_.bvh, tree_.partial, rays); }
+
   CASTRAY_INLINE InPlace placement(const SurfaceHit& /*hit*/) const { return {}; }
 
   CASTRAY_INLINE SurfacePoint surface_point(const Vec& /*o*/, const Vec& /*d*/, const SurfaceHit& hit) const {

@@ -74,4 +74,8 @@ void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const Shadow
   find_occluded(bvh, begin_thinning(there.partial, rays), rays);
 }
 
+void bvh_tint(const WideBvhView& bvh, const PartialTriangles& partial, const TintBatch& rays) {
+  find_occluded(bvh, Tinting::of(partial, rays), segments_of(rays));
+}
+
 }  // namespace castray::CASTRAY_ISA

@@ -15,4 +15,7 @@ void bvh_closest(const WideBvhView& bvh, const PartlyThere& there, const RayBatc
 void bvh_occluded(const WideBvhView& bvh, const ShadowBatch& rays);
 void bvh_occluded(const WideBvhView& bvh, const PartlyThere& there, const ShadowBatch& rays);
 
+/// What the windows that rays pass leave of colours.
+void bvh_tint(const WideBvhView& bvh, const PartialTriangles& partial, const TintBatch& rays);
+
 }  // namespace castray::CASTRAY_ISA

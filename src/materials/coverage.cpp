@@ -32,9 +32,10 @@ Vec3d normal_at(const Scene& scene, const Hit<T>& hit, const Vec3d& direction) {
   return usable ? smooth : flat;
 }
 
-/// All but what of all colours goes straight on.
+/// All but what of each colour goes straight on.
 template <class T>
-T share_of_window(const Scene& scene, const Material& window, const Hit<T>& hit, const Vec3d& direction) {
+Vec3<T> shares_of_window(const Scene& scene, const Material& window, const Hit<T>& hit,
+                         const Vec3d& direction) {
   const Vec3<T> kept =
       window.map(SurfaceParameter::transmittance).used()
           ? surface_values(scene, window, TrianglePlace<T>{hit.triangle, hit.b1, hit.b2}).color(slot_kd)
@@ -43,12 +44,14 @@ T share_of_window(const Scene& scene, const Material& window, const Hit<T>& hit,
   const double size2 = dot(normal, normal) * dot(direction, direction);
   const double cosine = size2 > 0 ? std::min(std::abs(dot(normal, direction)) / std::sqrt(size2), 1.0) : 1.0;
   const T reflected = pane_reflectance(static_cast<T>(cosine), static_cast<T>(window.ior));
-  return reflected + (1 - reflected) * (1 - min_component(kept));
+  const auto share = [reflected](T passed) { return reflected + (1 - reflected) * (1 - passed); };
+  return {share(kept.x), share(kept.y), share(kept.z)};
 }
 
 }  // namespace
 
-Coverage::Coverage(const Scene& scene) : scene_(scene) {
+Coverage::Coverage(const Scene& scene)
+    : scene_(scene), tints_(std::ranges::any_of(scene.materials, &Material::tints)) {
   if (std::ranges::none_of(scene.materials, &Material::may_have_holes)) return;
   partial_.resize((scene.triangles.size() + 31) / 32);
   for (std::uint32_t i = 0; i < scene.triangles.size(); ++i)
@@ -59,7 +62,18 @@ template <class T>
 T Coverage::share_there(const Hit<T>& hit, const Vec3<T>& direction) const {
   const T share = coverage_at(scene_, TrianglePlace<T>{hit.triangle, hit.b1, hit.b2});
   const Material& material = scene_.material_of(hit.triangle);
-  return material.is_window() ? share * share_of_window(scene_, material, hit, Vec3d(direction)) : share;
+  if (!material.is_window()) return share;
+  return share * min_component(shares_of_window(scene_, material, hit, Vec3d(direction)));
+}
+
+template <class T>
+Vec3<T> Coverage::tint(const Hit<T>& hit, const Vec3<T>& direction) const {
+  const Material& material = scene_.material_of(hit.triangle);
+  if (!material.tints()) return Vec3<T>(1);
+  const T share = coverage_at(scene_, TrianglePlace<T>{hit.triangle, hit.b1, hit.b2});
+  const Vec3<T> passed = Vec3<T>(1) - shares_of_window(scene_, material, hit, Vec3d(direction)) * share;
+  const T most = max_component(passed);
+  return most > 0 ? passed / most : Vec3<T>(1);
 }
 
 template <class T>
@@ -77,6 +91,8 @@ HitFilter<T> Coverage::there_in(std::uint32_t world, const Vec3<T>& direction) c
 }
 
 template float Coverage::share_there(const Hit<float>&, const Vec3<float>&) const;
+template Vec3<float> Coverage::tint(const Hit<float>&, const Vec3<float>&) const;
+template Vec3<double> Coverage::tint(const Hit<double>&, const Vec3<double>&) const;
 template HitFilter<float> Coverage::there_in(std::uint32_t, const Vec3<float>&) const;
 template HitFilter<double> Coverage::there_in(std::uint32_t, const Vec3<double>&) const;
 

@@ -15,7 +15,8 @@ namespace castray {
 /// whatever the order of its tests. As no path meets a point twice, the mean over worlds is light that is
 /// thinned by 1 - coverage at each crossing.
 ///
-/// The share of a window that is there is what of the light does not go straight on (Material::is_window), by
+/// The share of a window that is there is what of the light does not go straight on (Material::is_window), of
+/// the colour that passes best; what passes is dimmed by `tint`. Both are by
 /// the angle between the ray and the normal; which is that of the vertices where there are such, without the
 /// bends of normal and bump maps.
 class Coverage {
@@ -34,6 +35,14 @@ class Coverage {
   template <class T>
   T share_there(const Hit<T>& hit, const Vec3<T>& direction) const;
 
+  /// Whether some material dims colours that pass.
+  bool tints() const { return tints_; }
+
+  /// What is left of each colour where a ray of this direction passes the surface, over what is of the one
+  /// that passes best.
+  template <class T>
+  Vec3<T> tint(const Hit<T>& hit, const Vec3<T>& direction) const;
+
   /// Which hits of a ray count in a path's world, where each instance has a world of its own. The filter must
   /// not outlive this.
   template <class T>
@@ -42,6 +51,7 @@ class Coverage {
  private:
   const Scene& scene_;
   std::vector<std::uint32_t> partial_;
+  bool tints_;
 };
 
 }  // namespace castray

@@ -43,9 +43,9 @@ const MaterialDescriptor& dielectric_descriptor();
 /// Radiance scales by (n_o / n_i)^2 where it crosses the surface.
 ///
 /// A thin wall is a pane of two smooth surfaces: what it does not reflect goes straight on, tinted once. It
-/// is a window where rays pass as if nothing were there with the probability of what all colours keep
-/// (Coverage): such a ray needs no vertex, and shadow rays find what is behind. Its BSDF is then that of the
-/// rest: of the mirror, and of what is left of a colour that passes better than another.
+/// is a window where rays pass as if nothing were there with the probability of what the colour keeps that
+/// passes best, and dim the others (Coverage): such a ray needs no vertex, and shadow rays find what is
+/// behind. Its BSDF is then that of the mirror alone.
 template <class T>
 struct Dielectric {
   T ior;
@@ -113,18 +113,16 @@ struct Dielectric {
 
   BsdfSample<T> sample_thin(const Vec3<T>& wo, T u_lobe) const {
     const T reflectance = pane_reflectance(std::abs(wo.z), ior);
-    const T as_if_nothing = window ? min_component(transmittance) : T(0);
-    const T most = window ? max_component(transmittance) - as_if_nothing : T(1);
-    const T there = reflectance + (1 - reflectance) * (1 - as_if_nothing),
-            goes_on = reflectance + (1 - reflectance) * most;
-    if (!(goes_on > 0)) return {};
-    const T chance = reflectance / goes_on;
-    const bool reflected = u_lobe < chance;
-    const Vec3<T> tint =
-        reflected ? Vec3<T>(1) : (transmittance - Vec3<T>(as_if_nothing)) * (most > 0 ? 1 / most : T(0));
-    return {.weight = tint * (goes_on / there),
-            .wi = reflected ? Vec3<T>(-wo.x, -wo.y, wo.z) : -wo,
-            .pdf = reflected ? chance : 1 - chance,
+    const Vec3<T> mirrored(-wo.x, -wo.y, wo.z);
+    if (window) {  // what passes does not come here
+      const T there = reflectance + (1 - reflectance) * (1 - max_component(transmittance));
+      if (!(reflectance > 0)) return {};
+      return {.weight = Vec3<T>(reflectance / there), .wi = mirrored, .pdf = 1, .specular = true};
+    }
+    const bool reflected = u_lobe < reflectance;
+    return {.weight = reflected ? Vec3<T>(1) : transmittance,
+            .wi = reflected ? mirrored : -wo,
+            .pdf = reflected ? reflectance : 1 - reflectance,
             .specular = true};
   }
 

@@ -4,24 +4,11 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// How the vertices of a window go on.
-struct WindowLobes {
-  Float chance;  ///< of reflection
-  Vec tint;      ///< of what goes straight on
-  Float weight;  ///< of both
-};
-
-/// Of panes that reflect so much, by transmittance.
-CASTRAY_INLINE WindowLobes window_lobes(Float reflectance, Vec transmittance) {
-  const Vec& t = transmittance;
-  const Float as_if_nothing = min(t.x, min(t.y, t.z)), most = max_component(t) - as_if_nothing;
+/// What is reflected of the light that does not pass windows which reflect so much, by transmittance.
+CASTRAY_INLINE Float share_mirrored(Float reflectance, const Vec& transmittance) {
   const Float passed = Float(1.f) - reflectance;
-  const Float goes_on = reflectance + passed * most;
-  const Mask some = goes_on > Float(0.f), tinted = most > Float(0.f);
-  const Vec rest = t - Vec{as_if_nothing, as_if_nothing, as_if_nothing};
-  return {select(some, reflectance / goes_on, Float(1.f)),
-          rest * select(tinted, Float(1.f) / most, Float(0.f)),
-          select(some, goes_on / (reflectance + passed * (Float(1.f) - as_if_nothing)), Float(0.f))};
+  const Float there = reflectance + passed * (Float(1.f) - max_component(transmittance));
+  return select(reflectance > Float(0.f), reflectance / there, Float(0.f));
 }
 
 /// Glass whose transmittance is kd; see dielectric.h.
@@ -67,14 +54,11 @@ struct Dielectric : ModelDefaults {
     const Float of_surface = fresnel_dielectric(wo_h, eta);
     const Mask thin = b.eta < Float(0.f);
     Float f = select(thin, Float(2.f) * of_surface / (Float(1.f) + of_surface), of_surface);
-    Vec straight = b.kd;
     Float shared(1.f);
     if (any(thin)) {
       const Mask window = thin & is_window(b);
-      const WindowLobes lobes = window_lobes(f, b.kd);
-      f = select(window, lobes.chance, f);
-      straight = select(window, lobes.tint, straight);
-      shared = select(window, lobes.weight, shared);
+      shared = select(window, share_mirrored(f, b.kd), shared);
+      f = select(window, Float(1.f), f);
     }
     const Mask reflected = choice < f;
     const Vec passed = select(thin, -wo, refract(wo, h, eta));
@@ -86,7 +70,7 @@ struct Dielectric : ModelDefaults {
                           (wo.z + ggx_stretched_length(b.alpha, wo));
     const Float weight = select(possible, select(smooth, shared, masking) / eta2, Float(0.f));
     const Float pdf = select(smooth, select(reflected, f, Float(1.f) - f), evaluate(b, wo, wi).pdf);
-    return {wi, tint(straight, reflected) * weight, pdf, smooth, eta2};
+    return {wi, tint(b.kd, reflected) * weight, pdf, smooth, eta2};
   }
 };
 

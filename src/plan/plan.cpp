@@ -47,7 +47,9 @@ bool may_share(const SceneNeeds& needs) { return needs.delta_lights == 0 || !nee
 /// spp is ignored: the tree changes low-order bits, and films that are merged or resumed must share one tree.
 BuildQuality build_quality(const Scene& scene, const RenderOptions& options, const Window& window) {
   constexpr double usual_rays_of_a_pixel = 16 * 4;
-  if (options.build == BuildQuality::fast) return BuildQuality::fast;
+  // A cut triangle is met more than once, and a window must take its colours once.
+  const bool tints = std::ranges::any_of(scene.materials, &Material::tints);
+  if (options.build == BuildQuality::fast || tints) return BuildQuality::fast;
   if (!scene.instances.empty())
     return options.build == BuildQuality::best ? BuildQuality::best : BuildQuality::fast;
   const double pixels = static_cast<double>(window.full_width) * window.full_height;

@@ -104,11 +104,12 @@ class CastRay {
   Vec3<T> cast_ray(const Ray<T>& ray, Path& path, const Arrival& arrival) const {
     ++path.rays;
     const Hit<T> hit = accel_.closest(ray, there(path, ray.direction));
-    if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless);
+    const Vec3<T> tint = tint_along({ray.origin, ray.direction, hit.found() ? hit.t : endless});
+    if (!hit.found()) return escaped(ray.direction, arrival) * kept(path.media, endless) * tint;
     Surface<T> x = surfaces_.at(hit, ray, path.world, path.vertex == 0 ? path.pixel : std::nullopt);
     segments_.place(x, hit, ray);
     if (bounds_body(x) && dot(x.normal, x.to_viewer) < 0) path.media.find(x.material);
-    const Vec3<T> transmittance = kept(path.media, hit.t);
+    const Vec3<T> transmittance = kept(path.media, hit.t) * tint;
     path.throughput *= transmittance;
     return transmittance * radiance_of(x, path, hit.t, arrival);
   }
@@ -133,6 +134,18 @@ class CastRay {
   /// Which hits of a ray count.
   HitFilter<T> there(const Path& path, const Vec3<T>& direction) const {
     return coverage_.there_in(path.world, direction);
+  }
+
+  /// What the windows that a ray passes leave of colours: all that it meets, as it ends at what is there.
+  Vec3<T> tint_along(const Ray<T>& ray) const {
+    Vec3<T> left(1);
+    if (!coverage_.tints()) return left;
+    const HitFilter<T> pass = [&](const Hit<T>& hit) {
+      left *= coverage_.tint(hit, ray.direction);
+      return false;
+    };
+    accel_.occluded(ray, pass);
+    return left;
   }
 
   Vec3<T> kept(const Media& media, T distance) const { return media.transmittance(scene_, distance); }
@@ -183,7 +196,8 @@ class CastRay {
     if (mis_) radiance *= light_share(y.pdf_area * distance2 / cos_light, x.bsdf.pdf(x.wo, local));
     ++path.rays;
     if (!segments_.visible(accel_, x, y, there(path, segment))) return {};
-    return radiance * kept(beyond(x, wi, path.media), std::sqrt(distance2));
+    return radiance * kept(beyond(x, wi, path.media), std::sqrt(distance2)) *
+           tint_along({x.p, segment, T(1)});
   }
 
   /// Integral over the directions of an image of the environment, estimated in one: f Le |cos| V / pdf.
@@ -197,8 +211,9 @@ class CastRay {
     if (!(max_component(radiance) > 0)) return {};
     if (mis_) radiance *= light_share(sample.pdf, x.bsdf.pdf(x.wo, local));
     ++path.rays;
-    if (accel_.occluded(Ray<T>{segments_.origin(x, sample.w), sample.w}, there(path, sample.w))) return {};
-    return radiance * kept(beyond(x, sample.w, path.media), endless);
+    const Ray<T> ray{segments_.origin(x, sample.w), sample.w};
+    if (accel_.occluded(ray, there(path, sample.w))) return {};
+    return radiance * kept(beyond(x, sample.w, path.media), endless) * tint_along(ray);
   }
 
   /// The sum over lights without size: f E |cos| V.
@@ -213,7 +228,7 @@ class CastRay {
       ++path.rays;
       const Ray<T> ray{segments_.origin(x, sample.wi), sample.wi, sample.distance};
       if (accel_.occluded(ray, there(path, sample.wi))) continue;
-      sum += radiance * kept(beyond(x, sample.wi, path.media), sample.distance);
+      sum += radiance * kept(beyond(x, sample.wi, path.media), sample.distance) * tint_along(ray);
     }
     return sum;
   }

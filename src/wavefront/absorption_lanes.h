@@ -2,6 +2,7 @@
 
 #include "lights/light_point_lanes.h"
 #include "wavefront/context_lanes.h"
+#include "wavefront/tint_lanes.h"
 
 // Absorption by distance inside glass (materials/media.h, in lanes). Each segment of a path counts it once:
 // segments that a ray is traced along when it hits, in `absorb`; connections to light points, and what pixels
@@ -57,10 +58,11 @@ CASTRAY_INLINE Uint media_towards(const KernelScene& scene, const Vertices& v, i
   return select(crosses, select(enters, media << 16 | medium, media >> 16), media);
 }
 
-/// Absorption along the rays of paths, to their hits. What hits glass from within was inside it, even if the
-/// camera or a lamp is there too. `to_be_gathered`: first segments of suffixes.
+/// What windows and absorption leave along the rays of paths, to their hits. What hits glass from within was
+/// inside it, even if the camera or a lamp is there too. `to_be_gathered`: first segments of suffixes.
 template <class Geometry>
 CASTRAY_STAGE void absorb(const Context& c, const Hits& hits, bool to_be_gathered, Paths& paths) {
+  tint<Geometry>(c, hits, to_be_gathered, paths);
   if (!c.scene.absorbing) return;
   const Geometry geometry = geometry_of<Geometry>(c);
   for (int i = 0; i < paths.count; i += width) {

@@ -73,6 +73,8 @@ CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, uint32_t 
                                   CameraConnections& to) {
   aim_camera(c, job, vertex, vertices, to);
   closest<Geometry>(c, to.rays, true, to.hits);
+  Tints tints;
+  if (has_tints(c)) find_tints<Geometry>(c, to.rays.o, to.rays.d, c.ends.one, to.rays.count, nullptr, tints);
   for (int i = 0; i < to.rays.count; i += width) {
     const Mask active = first_lanes(to.rays.count - i);
     const Uint entry = select(active, load(to.rays.names.slot + i), Uint(0u));
@@ -89,8 +91,8 @@ CASTRAY_STAGE void connect_camera(Context& c, const LightPathJob& job, uint32_t 
     const BsdfValue value = evaluate(bsdf, to_local(frame, wo), to_local(frame, wi));
     const Float cos_light = max(abs(dot(normal, wi)), Float(0x1p-60f));
     const Uint slot = gather(vertices.names.slot, entry);
-    const Vec reflected =
-        gather_entries(vertices.throughput, entry) * value.f_cos * gather(vertices.eta2, entry);
+    Vec reflected = gather_entries(vertices.throughput, entry) * value.f_cos * gather(vertices.eta2, entry);
+    if (has_tints(c)) reflected = reflected * load(tints.left, i);
     const Float weight = gather(emissions.flux, slot) * load(to.density + i) * dot(normal, wo) /
                          (cos_light * length_squared(d));
     const Mask lit =

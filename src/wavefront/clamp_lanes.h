@@ -1,6 +1,7 @@
 #pragma once
 
 #include "wavefront/scratch_lanes.h"
+#include "wavefront/tint_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -9,10 +10,11 @@ CASTRAY_INLINE bool clamps_indirect(const KernelOptions& options) {
 }
 
 /// Radiance that pixels i to i + width - 1 have gathered from the light points and suffixes of their
-/// tile.
+/// tile, as far as windows before the camera leave it.
 template <uint32_t features>
-CASTRAY_INLINE Vec reflected(const Scratch& s, int i) {
+CASTRAY_INLINE Vec reflected(const Context& c, const Scratch& s, int i) {
   const Vec sum = load(s.gathered.sum, i);
+  if ((features & feature_materials) && has_tints(c)) return sum * load(s.camera.throughput, i);
   return (features & feature_materials) ? sum : sum * load_kd(s.camera.parameters, i);
 }
 
@@ -26,7 +28,7 @@ template <uint32_t features>
 CASTRAY_INLINE void add_gathered_to_direct(const Context& c, Scratch& s) {
   if (!clamps_indirect(c.options)) return;
   for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
-    store(s.direct, i, load(s.direct, i) + reflected<features>(s, i));
+    store(s.direct, i, load(s.direct, i) + reflected<features>(c, s, i));
 }
 
 /// The same for shadow rays of what the camera sees, which have been traced.

@@ -48,7 +48,15 @@ PartialTriangles partial_triangles(const Coverage& coverage, BuildQuality build)
     return static_cast<const Coverage*>(self)->share_there(
         Hit<float>{0, hit.triangle, hit.b1, hit.b2, hit.instance}, direction);
   };
-  return {coverage.partial_triangles(), share_there, &coverage, build != BuildQuality::best};
+  const auto tint = [](const void* self, const PartialHit& hit, float* red, float* green, float* blue) {
+    const Vec3f direction(hit.direction[0], hit.direction[1], hit.direction[2]);
+    const Vec3f left = static_cast<const Coverage*>(self)->tint(
+        Hit<float>{0, hit.triangle, hit.b1, hit.b2, hit.instance}, direction);
+    *red *= left.x, *green *= left.y, *blue *= left.z;
+  };
+  void (*const tints)(const void*, const PartialHit&, float*, float*, float*) = tint;
+  return {coverage.partial_triangles(), share_there, &coverage, coverage.tints() ? tints : nullptr,
+          build != BuildQuality::best};
 }
 
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {

@@ -121,7 +121,7 @@ CASTRAY_STAGE void share(Context& c, Scratch& s) {
   if constexpr (features & feature_materials) share_chains<Geometry, features>(c, s);
   gather_all<Geometry, features>(c, s, s.camera, true);
   for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
-    store(s.radiance, i, load(s.radiance, i) + reflected<features>(s, i));
+    store(s.radiance, i, load(s.radiance, i) + reflected<features>(c, s, i));
 }
 
 }  // namespace castray::CASTRAY_ISA

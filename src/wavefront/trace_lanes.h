@@ -2,6 +2,7 @@
 
 #include "wavefront/context_lanes.h"
 #include "wavefront/radiance_lanes.h"
+#include "wavefront/tint_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -26,6 +27,12 @@ CASTRAY_INLINE void add_unblocked(Context& c, ShadowRays& rays, Radiance& radian
                      (uint32_t)rays.count, kept});
   for (int i = 0; kept && i < rays.count; i += width)
     store(rays.radiance, i, load(rays.radiance, i) * load(kept + i));
+  if (has_tints(c)) {
+    Tints tints;
+    find_tints<Geometry>(c, rays.o, rays.d, c.ends.one, rays.count, nullptr, tints);
+    for (int i = 0; i < rays.count; i += width)
+      store(rays.radiance, i, load(rays.radiance, i) * load(tints.left, i));
+  }
   for (int i = 0; i < rays.count; ++i) {
     if (rays.blocked[i]) continue;
     radiance.x[rays.slot[i]] += rays.radiance.x[i];

@@ -63,6 +63,22 @@ CASTRAY_INLINE void thin(const VisibilityScratch& s, int n, int own, bool weight
   }
 }
 
+/// Scales what pixels get by what windows leave of colours on the n segments.
+template <class Geometry>
+inline __attribute__((noinline)) void tint(const Context& c, const VisibilityScratch& s, int n, Transfer& t) {
+  Tints tints;
+  find_tints<Geometry>(c, s.o, s.d, c.ends.one, n, nullptr, tints);
+  VecArray<tile_pixels> left;
+  const Float one(1.f);
+  for (int i = 0; i < tile_vectors; ++i) store(left, i * width, Vec{one, one, one});
+  for (int k = 0; k < n; ++k) {
+    left.x[s.pixel[k]] = tints.left.x[k];
+    left.y[s.pixel[k]] = tints.left.y[k];
+    left.z[s.pixel[k]] = tints.left.z[k];
+  }
+  for (int i = 0; i < tile_vectors; ++i) t.weight[i] = t.weight[i] * load(left, i * width);
+}
+
 /// Visibility of the pixels `asked` by one shadow ray each: all that partial triangles may lie before, as no
 /// shaft holds one. They thin the light of the sender's own pixel, too, which found it by chance.
 template <class Geometry, class AnySender>
@@ -85,6 +101,7 @@ CASTRAY_INLINE void hide_by_rays(Context& c, const AnySender& y, const Gatherers
   geometry.occluded({s.o.x, s.o.y, s.o.z, s.d.x, s.d.y, s.d.z, c.ends.one, s.blocked, (uint32_t)n,
                      thins ? s.kept : nullptr});
   c.asked += (uint64_t)n;
+  if (weights && has_tints(c)) tint<Geometry>(c, s, n, t);
   if (thins) return thin(s, n, y.own, weights, t);
   uint64_t hidden = 0;
   for (int k = 0; k < n; ++k) hidden |= (uint64_t)(s.blocked[k] ? 1 : 0) << s.pixel[k];

@@ -4,6 +4,7 @@
 
 #include "castray_blocks.h"
 #include "instanced.h"
+#include "materials/texture.h"
 
 using namespace castray;
 using namespace castray::test;
@@ -48,6 +49,33 @@ Scene room(const Material& glass, int panes, float lamp_side = 0.3f) {
   return sketch.scene;
 }
 
+/// The same with an image of the panes' colours, from black to white.
+Scene room_of_images(Material glass) {
+  Image colors(2, 2);
+  colors.pixels = {{0, 0, 0}, {1, 0.1f, 0.6f}, {0.2f, 0.9f, 0.2f}, {1, 1, 1}};
+  glass.map(SurfaceParameter::transmittance).texture = 0;
+  Scene scene = room(glass, 2);
+  scene.textures.push_back(make_texture("colours", colors));
+  scene.uvs = {{0, 0}, {1.3f, 0}, {0.2f, 1.4f}};
+  scene.triangle_uvs.assign(scene.triangles.size(), {0, 1, 2});
+  return scene;
+}
+
+/// A floor in the sun, seen from below a pane that lies over it.
+Scene floor_in_the_sun(const Material& glass) {
+  SceneSketch sketch;
+  const auto floor = sketch.add_material({.name = "floor", .kd = Vec3d(0.5)});
+  const auto of_pane = sketch.add_material(glass);
+  sketch.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, floor);
+  sketch.add_quad({-1, 0.9f, 1}, {1, 0.9f, 1}, {1, 0.9f, -1}, {-1, 0.9f, -1}, of_pane);
+  sketch.scene.delta_lights.push_back({.kind = DeltaLight::Kind::directional,
+                                       .position = {},
+                                       .direction = {0.6, -0.8, 0},
+                                       .intensity = Vec3d(1)});
+  sketch.scene.camera = make_camera({0, 0.8, 0.5}, {0, 0, 0}, {0, 1, 0}, 40);
+  return sketch.scene;
+}
+
 /// A box of panes before a white sky.
 Scene box() {
   SceneSketch sketch;
@@ -63,8 +91,11 @@ TEST_CASE("kernels see lamps and skies through panes as castRay does", "[statist
   const Scene scene = room(pane(tint), 2);
   const Expected expected(scene, wavefront_options(8));
   expected.check("plain", scene, plain(wavefront_options(4)));
-  expected.check_with("shared, MIS", scene, [](RenderOptions& o) { o.mis = Switch::on; });
-  expected.check_with("boxes cut", scene, [](RenderOptions& o) { o.build = BuildQuality::best; });
+  expected.check_with("shared, MIS, with boxes that would be cut", scene, [](RenderOptions& o) {
+    o.mis = Switch::on;
+    o.build = BuildQuality::best;
+  });
+  expected.check_with("paths from lights", scene, [](RenderOptions& o) { o.caustics = Switch::on; });
   expected.check("instances", as_instances(scene, kinds_of_places()), wavefront_options(4));
 }
 
@@ -89,6 +120,29 @@ TEST_CASE("a box of white panes takes no light away", "[statistical]") {
   }
 }
 
+TEST_CASE("an image of a pane's colours dims light as paths find by chance", "[statistical]") {
+  const Scene scene = room_of_images(pane());
+  const Expected expected(scene, wavefront_options(8), 12);
+  expected.check("shared", scene, wavefront_options(4), 12);
+  expected.check("by chance", room_of_images(blind(pane())), plain(wavefront_options(16)), 12);
+}
+
+// No path finds the sun by chance; each of its colours passes as much as that of the pane says.
+TEST_CASE("the sun has the colour of the pane that it shines through") {
+  const auto lit = [](const Material& glass, const std::string& isa) {
+    RenderOptions options = plain(wavefront_options(1));
+    options.max_depth = 2;
+    options.isa = isa;
+    return Vec3d(render(floor_in_the_sun(glass), options).film.image().at(16, 16));
+  };
+  for (const std::string& isa : instruction_sets()) {
+    const Vec3d clear = lit(pane(), isa), tinted = lit(pane(tint), isa);
+    CAPTURE(isa, clear.x, tinted.x);
+    CHECK(clear.x > 0.1);
+    for (int c = 0; c < 3; ++c) CHECK(tinted[c] == Approx(clear[c] * tint[c]).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("a small lamp behind a pane is not found by chance") {
   const auto noise = [](const Material& glass) {
     const Blocks blocks = blocks_of(room(glass, 1, 0.05f), plain(wavefront_options(8)), 6);
@@ -100,7 +154,9 @@ TEST_CASE("a small lamp behind a pane is not found by chance") {
     }
     return variance;
   };
-  const double window = noise(pane()), by_chance = noise(blind(pane()));
-  CAPTURE(window, by_chance);
-  CHECK(window < by_chance / 50);
+  for (const Vec3d& transmittance : {Vec3d(1), tint}) {
+    const double window = noise(pane(transmittance)), by_chance = noise(blind(pane(transmittance)));
+    CAPTURE(transmittance.y, window, by_chance);
+    CHECK(window < by_chance / 50);
+  }
 }

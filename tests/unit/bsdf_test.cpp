@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "core/sequences.h"
+#include "materials/coverage.h"
 #include "materials/material_table.h"
 #include "statistics.h"
 
@@ -377,28 +378,32 @@ TEST_CASE("a pane reflects what its two surfaces do, and the rest goes straight 
   }
 }
 
-TEST_CASE("what vertices of a window send on, and what passes as if nothing were there, is a pane's",
+TEST_CASE("what vertices of a window mirror, and what passes as if nothing were there, is a pane's",
           "[bsdf]") {
   for (const Vec3d& transmittance : {Vec3d(1), Vec3d(0.5), Vec3d(1, 0.5, 0.25), Vec3d(0, 0.5, 1)})
     for (const double ior : {1.0, 1.5}) {
       Material m = dielectric(0);
       m.thin = true, m.transmittance = transmittance, m.ior = ior;
       const MaterialTable<double> table({m});
+      Scene scene;
+      scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+      scene.triangles = {{0, 1, 2}};
+      scene.triangle_material = {0};
+      scene.materials = {m};
+      const Coverage coverage(scene);
+      CHECK(coverage.tints() == (transmittance.x != transmittance.z));
       for (const double theta : {0.1, 1.0, 1.5, 2.0, 3.0}) {
         const Vec3d wo = direction(theta, 0.7);
         const double reflected = pane_reflectance(std::abs(wo.z), ior);
-        const double passed = (1 - reflected) * min_component(transmittance);
-        Vec3d mirrored, straight(passed);
-        for (const double u : {0.0, 1 - 1e-9}) {
-          const BsdfSample<double> s = table[0].sample(wo, u, {0.3, 0.4});
-          if (!s.valid()) continue;
-          const bool ahead = length(s.wi + wo) < 1e-9;
-          (ahead ? straight : mirrored) += s.weight * (s.pdf * (1 - passed));
-          if (s.pdf == 1) break;  // both numbers choose the same
-        }
+        const Hit<float> hit{1, 0, 0.3f, 0.3f};
+        const double there = static_cast<double>(coverage.share_there(hit, Vec3f(-wo)));
+        const Vec3d passed = Vec3d(coverage.tint(hit, Vec3f(-wo))) * (1 - there);
+        const BsdfSample<double> s = table[0].sample(wo, 0.7, {0.3, 0.4});
+        const Vec3d mirrored = s.valid() ? s.weight * there : Vec3d();
         CAPTURE(transmittance.x, transmittance.z, ior, theta);
-        CHECK(length(mirrored - Vec3d(reflected)) < 1e-9);
-        CHECK(length(straight - transmittance * (1 - reflected)) < 1e-9);
+        CHECK(length(mirrored - Vec3d(reflected)) < 1e-6);
+        CHECK(length(passed - transmittance * (1 - reflected)) < 1e-6);
+        if (s.valid()) CHECK(length(s.wi - Vec3d(-wo.x, -wo.y, wo.z)) < 1e-12);
       }
     }
 }
