@@ -21,18 +21,26 @@ CASTRAY_INLINE Float fraction(Float x) {
   return small - floor(small);
 }
 
-/// Channel `c` of the texels with these indices.
-CASTRAY_INLINE Float texel_channel(const KernelTexture& texture, Uint index, uint32_t c) {
+/// Texels as they are read from memory: words with the bytes of all channels, the first lowest; or places of
+/// the first of their floats.
+CASTRAY_INLINE Uint read_texels(const KernelTexture& texture, Uint index) {
+  const auto channels = (uint32_t)texture.channels;
+  const Uint first = index * channels;
+  if (!texture.bytes) return first;
+  // a word that does not reach over the end of the image
+  const Uint last = Uint((uint32_t)(texture.width * texture.height) * channels - 4u);
+  const Uint from = select(first < last, first, last);
+  return gather_bytes(texture.bytes, from) >> ((first - from) << 3);
+}
+
+/// Channel `c` of texels that are read.
+CASTRAY_INLINE Float texel_channel(const KernelTexture& texture, Uint texels, uint32_t c) {
   const auto channels = (uint32_t)texture.channels;
   const bool has_alpha = channels % 2 == 0;
   if (c == 3 && !has_alpha) return Float(1.f);
   const uint32_t place = c == 3 ? channels - 1 : channels < 3 ? 0 : c;
-  const Uint at = index * channels + place;
-  if (!texture.bytes) return gather(texture.floats, at);
-  // a word that does not reach over the end of the image
-  const Uint last = Uint((uint32_t)(texture.width * texture.height) * channels - 4u);
-  const Uint from = select(at < last, at, last);
-  const Uint byte = (gather_bytes(texture.bytes, from) >> ((at - from) << 3)) & 0xffu;
+  if (!texture.bytes) return gather(texture.floats, texels + place);
+  const Uint byte = (texels >> (8 * place)) & 0xffu;
   return c == 3 ? to_float(byte) / Float(255.f) : gather(texture.values, byte);
 }
 
@@ -40,16 +48,16 @@ struct Gradient {
   Float u, v;
 };
 
-/// The four texels around each lane's point, in rows from the top, and the point's place between their
-/// centres.
+/// The four texels around each lane's point, as read_texels has them, in rows from the top, and the point's
+/// place between their centres.
 struct TexelSquare {
-  Uint index[2][2];
+  Uint texels[2][2];
   Float s, t;
 
   /// How the value changes per texel, to the right and downwards.
   CASTRAY_INLINE Gradient gradient(const KernelTexture& texture, uint32_t channel) const {
     const auto texel = [&](int row, int column) {
-      return texel_channel(texture, index[row][column], channel);
+      return texel_channel(texture, texels[row][column], channel);
     };
     const Float one(1.f), a = texel(0, 0), b = texel(0, 1), c = texel(1, 0), d = texel(1, 1);
     return {(b - a) * (one - t) + (d - c) * t, (c - a) * (one - s) + (d - b) * s};
@@ -58,7 +66,7 @@ struct TexelSquare {
   /// Bilinear.
   CASTRAY_INLINE Float value(const KernelTexture& texture, uint32_t channel) const {
     const auto texel = [&](int row, int column) {
-      return texel_channel(texture, index[row][column], channel);
+      return texel_channel(texture, texels[row][column], channel);
     };
     const Float one(1.f);
     const Float top = texel(0, 0) * (one - s) + texel(0, 1) * s;
@@ -83,8 +91,9 @@ CASTRAY_INLINE TexelSquare texels_around(const KernelMap& map, Float u, Float v)
   TexelSquare square{{}, x - x0, y - y0};
   for (int row = 0; row < 2; ++row)
     for (int column = 0; column < 2; ++column)
-      square.index[row][column] = index(y0 + Float((float)row), h) * Uint((uint32_t)texture.width) +
-                                  index(x0 + Float((float)column), w);
+      square.texels[row][column] =
+          read_texels(texture, index(y0 + Float((float)row), h) * Uint((uint32_t)texture.width) +
+                                   index(x0 + Float((float)column), w));
   return square;
 }
 
