@@ -1,85 +1,13 @@
-#include "wavefront/pilot.h"
-
 #include <catch2/catch.hpp>
 
-#include <algorithm>
-#include <array>
-#include <functional>
 #include <limits>
-#include <span>
-#include <tuple>
-#include <utility>
-#include <vector>
 
-#include "castray/render.h"
-#include "core/sequences.h"
-#include "integrators.h"
 #include "plan/plan.h"
+#include "pretended_renders.h"
 #include "test_scenes.h"
-#include "tracers.h"
-#include "wavefront/kernel_scene.h"
 
 using namespace castray;
 using namespace castray::test;
-
-namespace {
-
-/// Of tile k of a job.
-int x_of(const TileJob& job, std::uint32_t k) { return job.places[k].x; }
-
-/// Uniform in [-1,1).
-float noise(std::uint32_t seed, const TileJob& job, std::uint32_t tile, std::uint32_t pixel,
-            std::uint32_t kind) {
-  std::uint32_t h = hash_combine(seed, static_cast<std::uint32_t>(x_of(job, tile)));
-  for (const std::uint32_t k :
-       {static_cast<std::uint32_t>(job.places[tile].y), static_cast<std::uint32_t>(job.sample), pixel, kind})
-    h = hash_combine(h, k);
-  return static_cast<float>(h >> 8) * 0x1p-23f - 1;
-}
-
-/// A renderer whose pixels are 1 + what is seen of emitters, and noise of the given greatest size. Of a plain
-/// sample's noise the other one of each two samples takes back `taken_back`. Rays are those of a tile.
-RenderJob pretended(float shared_noise, float plain_noise, float emitted, std::uint64_t shared_rays,
-                    std::uint64_t plain_rays, std::uint64_t gathered = 0, std::uint64_t evaluated = 0,
-                    std::uint64_t asked = 0, float taken_back = 0) {
-  return [=](const KernelOptions& options, const TileJob& job, TileResult& result) {
-    const bool shared = options.suffixes > 0;
-    TileJob other = job;
-    other.sample ^= 1;
-    const auto tiles = static_cast<std::uint32_t>(job.tiles);
-    for (std::uint32_t k = 0; k < tiles; ++k)
-      for (std::uint32_t i = 0; i < tile_pixels; ++i)
-        for (std::uint32_t c = 0; c < 3; ++c) {
-          const float seen = emitted * (1 + noise(options.seed, job, k, i, 7));
-          const float of_sample = shared
-                                      ? shared_noise * noise(options.seed, job, k, i, c)
-                                      : plain_noise * (noise(options.seed, job, k, i, 3 + c) -
-                                                       taken_back * noise(options.seed, other, k, i, 3 + c));
-          result.radiance[c][k * tile_pixels + i] = seen + 1 + of_sample;
-          result.emitted[c][k * tile_pixels + i] = seen;
-        }
-    result.rays += tiles * (shared ? shared_rays + gathered : plain_rays);
-    result.gathered += tiles * (shared ? gathered : 0);
-    result.asked += tiles * (shared ? asked : 0);
-    result.evaluated += tiles * (shared ? evaluated : 0);
-  };
-}
-
-KernelOptions sharing() {
-  KernelOptions options{};
-  options.suffixes = 64;
-  options.ragged = 4;
-  return options;
-}
-
-/// Of a pilot that has nothing else to choose.
-std::optional<double> gain_of_sharing(const KernelOptions& options, int width, int height, int threads,
-                                      const RenderJob& job, bool list = true) {
-  return find_gains({width, height, list, threads, job}, options, {.caustics = false, .sharing = true}, {})
-      .sharing_by_chance;
-}
-
-}  // namespace
 
 TEST_CASE("the pilot's gain of sharing is the ratio of variances times that of costs") {
   // at least 8 tiles of 64 pixels with 3 channels and a degree of freedom: a variance is known to 3.6 %, a
@@ -252,95 +180,6 @@ TEST_CASE("half of the suffixes are taken where error times cost is less with th
   CHECK(gain(true) / gain(false) == Approx(4 / (1.55 * (0.63 + 4) / 2)).epsilon(0.02));
 }
 
-TEST_CASE("an image with few suffixes by a pilot is that of as many given, and its film tells them") {
-  const Scene floor = standard_scene("kinds/glossy_floor");
-  RenderOptions options;
-  options.width = options.height = 64;
-  options.spp = 1;
-  RenderOptions few = options;
-  few.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 32};
-  const Film film = render(floor, options).film;
-  CHECK_THAT(film.key, Catch::Contains("sharing=on; suffixes=32"));
-  CHECK(describe(film).at("castray:suffixes") == "32");
-  CHECK_THAT(describe(film).at("castray:options"), !Catch::Contains("--suffixes"));  // there is no such flag
-  CHECK(film.image().pixels == render(floor, few).film.image().pixels);
-}
-
-namespace {
-
-/// Where a job's pixels are, and their radiance.
-using Rendered = std::pair<std::vector<std::uint32_t>, std::vector<float>>;
-
-/// Jobs of a small image of glass on every kernel.
-void with_kernels(const std::function<void(const std::function<Rendered(const TileJob&)>&)>& test) {
-  const Scene box = standard_scene("kinds/glass_ball");
-  RenderOptions options;
-  const Plan plan = make_plan(box, options, {64, 64, 0, 0, 64, 64});
-  const KernelSceneData data(box, plan, 64, 64, 1);
-  for (const KernelApi* kernel : available_kernels()) {
-    std::vector<std::uint8_t> memory(kernel->scratch_bytes + 64);
-    void* scratch = &memory[64 - reinterpret_cast<std::uintptr_t>(memory.data()) % 64];
-    test([&](const TileJob& job) {
-      std::vector<std::uint32_t> place(2 * batch_size);
-      std::vector<float> radiance(3 * batch_size);
-      TileResult result{&place[0],
-                        &place[batch_size],
-                        {&radiance[0], &radiance[batch_size], &radiance[2 * batch_size]},
-                        0,
-                        0,
-                        0,
-                        0};
-      KernelOptions k = sharing();
-      k.ragged = 0;
-      k.sobol = k.jitter = true;
-      k.light_points = 8;
-      k.most_indirect = std::numeric_limits<float>::infinity();
-      kernel->render_tiles[plan.features](data.view, k, job, scratch, result);
-      return Rendered{place, radiance};
-    });
-  }
-}
-
-TileJob job_of(std::span<const TilePlace> places, std::uint64_t sample) {
-  TileJob job{};
-  job.tiles = static_cast<int>(places.size());
-  job.sample = sample;
-  job.places = places.data();
-  return job;
-}
-
-}  // namespace
-
-TEST_CASE("tiles of one job that lie apart are as those that lie alone") {
-  with_kernels([](const auto& render) {
-    const std::array<TilePlace, 3> places{{{8, 16, 2, 2}, {40, 0, 5, 1}, {24, 56, 3, 7}}};
-    const auto [all_at, all] = render(job_of(places, 5));
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      const TilePlace& p = places[k];
-      const auto [at, alone] = render({p.x, p.y, p.grid_x, p.grid_y, 1, 5});
-      for (std::size_t i = 0; i < tile_pixels; ++i) {
-        const std::size_t j = k * tile_pixels + i;
-        REQUIRE((all_at[j] == at[i] && all_at[batch_size + j] == at[batch_size + i]));
-        for (std::size_t c = 0; c < 3; ++c) REQUIRE(all[c * batch_size + j] == alone[c * batch_size + i]);
-      }
-    }
-  });
-}
-
-TEST_CASE("repeats of a tile count up one sequence") {
-  with_kernels([](const auto& render) {
-    const auto take = [&](std::uint64_t sample, std::uint32_t repeat, std::uint32_t repeats) {
-      const TilePlace place{8, 16, 2, 2, repeat, repeats};
-      return render(job_of({&place, 1}, sample)).second;
-    };
-    const std::vector<float> twelfth = take(6, 0, 2);
-    CHECK(twelfth == take(3, 0, 4));
-    CHECK(twelfth == take(2, 2, 5));
-    CHECK(twelfth != take(6, 1, 2));
-    CHECK(twelfth != take(12, 0, 1));  // samples without repeats have a sequence of their own
-  });
-}
-
 TEST_CASE("to the pilot, what pixels gather costs less than rays, and BSDFs to evaluate cost something") {
   for (const bool list : {true, false}) {
     const auto gain = [list](std::uint64_t rays, std::uint64_t gathered, std::uint64_t evaluated,
@@ -449,23 +288,6 @@ TEST_CASE("where tiles find caustics by chance, the pilot counts what sharing le
         Approx((rest + chance(35)) * rays / with).epsilon(0.05));
 }
 
-TEST_CASE(
-    "paths from lights bring the caustics of small lamps by default, and chance what black mirrors throw") {
-  RenderOptions options;
-  options.width = options.height = 64;
-  options.spp = 1;
-  for (const char* name : {"kinds/glass_ball_small_lamp", "kinds/smooth_glass_ball"})
-    CHECK_THAT(render(standard_scene(name), options).film.key, Catch::Contains("; light-paths=on"));
-  Scene scene = standard_scene("kinds/facing_mirrors");
-  for (Material& m : scene.materials)
-    if (m.type == MaterialType::conductor) m.reflectance = {1e-4, 1e-4, 1e-4};
-  options.reuse = {.automatic = false};
-  const Film film = render(scene, options).film;
-  CHECK_THAT(film.key, !Catch::Contains("light-paths"));
-  options.caustics = Switch::off;
-  CHECK((render(scene, options).film.image().pixels == film.image().pixels));
-}
-
 TEST_CASE("what the camera sees of emitters does not count in the pilot, nor does what is not finite") {
   const RenderJob quiet = pretended(0.1f, 0.2f, 0, 1000, 1000), loud = pretended(0.1f, 0.2f, 100, 1000, 1000);
   const auto expected = gain_of_sharing(sharing(), 256, 256, 1, quiet);
@@ -526,58 +348,4 @@ TEST_CASE("to the pilot, differences do not pay where samples cost little, or fe
   CHECK(gain_of_reconstruction(partly_alike(0.95f, 0, 1), false) > 1);  // rays over a tree cost more
   CHECK(gain_of_reconstruction(partly_alike(0.95f, 10, 20)) < 1);
   CHECK(gain_of_reconstruction(partly_alike(0.95f, 10, 20, 128)) > 1.2);  // 1/32 of all do not decide
-}
-
-TEST_CASE("whether an image is reconstructed is chosen alike for all parts of it, and never for few tiles") {
-  RenderOptions options;
-  options.width = options.height = 192;
-  options.spp = 1;
-  const auto kept = [](const Scene& scene, const RenderOptions& o) {
-    const Film film = render(scene, o).film;
-    CHECK(film.differences().kept() == (film.key.find("; differences=on") != std::string::npos));
-    return film.differences().kept();
-  };
-  const Scene box = standard_scene("cornell_box"), outdoors = standard_scene("kinds/sky_and_ground");
-  CHECK(kept(box, options));
-  CHECK_FALSE(kept(outdoors, options));
-  options.crop = Window{.x0 = 20, .y0 = 30, .x1 = 33, .y1 = 41};
-  options.samples = SampleRange{5, 1};
-  options.threads = 3;
-  options.seed = 9;
-  CHECK(kept(box, options));
-  CHECK_FALSE(kept(outdoors, options));
-  options.target_error = 0.1;
-  options.samples.reset();
-  CHECK_FALSE(kept(box, options));
-  RenderOptions small;
-  small.width = small.height = 32;
-  small.spp = 4;
-  CHECK_FALSE(kept(box, small));
-}
-
-TEST_CASE("under leaves paths are plain by default, in the box they are shared, whatever part is rendered") {
-  RenderOptions options;
-  options.width = options.height = 64;
-  options.spp = 2;
-  const auto pixels = [](const Scene& scene, const RenderOptions& o) {
-    return render(scene, o).film.image().pixels;
-  };
-  RenderOptions plain = options, shared = options;
-  plain.reuse = {.automatic = false};
-  shared.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 64};
-  const Scene leaves = standard_scene("kinds/foliage"), box = standard_scene("cornell_box");
-  CHECK(pixels(leaves, options) == pixels(leaves, plain));
-  CHECK(pixels(box, options) == pixels(box, shared));
-  const RenderResult alone = render(leaves, options);
-  CHECK_THAT(alone.film.key, Catch::EndsWith("sharing=off"));
-  CHECK_THAT(render(box, options).film.key, Catch::Contains("sharing=on"));
-  CHECK(alone.stats.pilot_seconds > 0);
-  CHECK(alone.stats.render_seconds > alone.stats.pilot_seconds);
-  CHECK(render(box, plain).stats.pilot_seconds == 0);  // there is nothing to choose
-  for (RenderOptions* o : {&options, &plain}) {
-    o->crop = Window{.x0 = 20, .y0 = 30, .x1 = 33, .y1 = 41};
-    o->samples = SampleRange{5, 1};
-    o->threads = 3;
-  }
-  CHECK(pixels(leaves, options) == pixels(leaves, plain));
 }
