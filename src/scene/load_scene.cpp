@@ -63,6 +63,7 @@ Scene load_scene(const std::filesystem::path& file) {
   if (suffix == ".gltf" || suffix == ".glb") return load_gltf(read_file(file), file);
   if (suffix == ".ply") return scene_of_mesh(file, [&](WarningList& w) { return read_ply(file, w); });
   std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) throw InputError(SourcePlace{file.string()}, "does not exist");
   throw InputError(SourcePlace{file.string()},
                    std::filesystem::is_directory(file, ignored)
                        ? "is a folder; give a scene file in it, .json, .gltf, .glb, .obj or .ply"

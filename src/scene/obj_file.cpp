@@ -28,6 +28,9 @@ constexpr const char* oddities[] = {
     "a statement in capitals means nothing; write v, vn, vt and f",
 };
 
+/// A face names what has not come yet.
+struct FacesFirst {};
+
 class ObjReader {
  public:
   ObjReader(std::string_view text, const std::filesystem::path& file, WarningList& warnings)
@@ -35,6 +38,16 @@ class ObjReader {
     obj_.path = file;
   }
 
+  /// Reads the vertices of all lines, for files whose faces come first; `read` does the rest.
+  void read_vertices() {
+    const LineReader start = lines_;
+    while (lines_.next_line()) read_vertex(lines_.word());
+    lines_ = start;
+    so_far_ = {};
+    vertices_are_read_ = true;
+  }
+
+  /// Throws FacesFirst where a face comes before its vertices, unless these are read.
   ObjFile read() {
     while (lines_.next_line()) read_statement();
     if (const Met& capitals = odd_[static_cast<std::size_t>(Oddity::capitals)];
@@ -51,14 +64,10 @@ class ObjReader {
  private:
   void read_statement() {
     const std::string_view key = lines_.word();
-    if (key == "v")
-      read_position();
-    else if (key == "f" || key == "fo")  // "fo" in files of old
+    if (key == "f" || key == "fo")  // "fo" in files of old
       read_face();
-    else if (key == "vn")
-      read_normal();
-    else if (key == "vt")
-      read_uv();
+    else if (key.starts_with('v'))
+      vertices_are_read_ ? count_vertex(key) : read_vertex(key);
     else if (key == "s")
       read_smoothing();
     else if (key == "usemtl")
@@ -70,6 +79,22 @@ class ObjReader {
     else if (key == "V" || key == "F" || key == "VN" || key == "VT")
       note(Oddity::capitals);
     // Lines, points, curves: nothing to render.
+  }
+
+  void read_vertex(std::string_view key) {
+    if (key == "v")
+      read_position();
+    else if (key == "vn")
+      read_normal();
+    else if (key == "vt")
+      read_uv();
+    count_vertex(key);
+  }
+
+  void count_vertex(std::string_view key) {
+    so_far_.positions += key == "v";
+    so_far_.normals += key == "vn";
+    so_far_.uvs += key == "vt";
   }
 
   /// Groups stand for objects in files that name none.
@@ -156,25 +181,31 @@ class ObjReader {
     return index;
   }
 
-  /// "7" is the seventh, "-1" the last so far.
-  std::uint32_t read_index(std::string_view& text, std::size_t count, const char* what) {
+  /// "7" is the seventh of the file, "-1" the last of `so_far`.
+  std::uint32_t read_index(std::string_view& text, std::size_t count, std::size_t so_far, const char* what) {
     const std::string_view written = text;
     const long long index = read_written_index(text, what);
-    const auto size = static_cast<long long>(count);
-    if (index == 0 || index > size || index < -size)
+    const auto size = static_cast<long long>(count), before = static_cast<long long>(so_far);
+    if (index > size && !vertices_are_read_) throw FacesFirst{};
+    if (index == 0 || index > size || index < -before)
       lines_.fail(fmt::format("{} index {} is out of range: {}", what,
-                              printable(written.substr(0, written.find('/'))),
-                              count == 0 ? std::string("there is none before this line")
-                                         : fmt::format("valid are 1 .. {} and -{} .. -1", count, count)));
-    return static_cast<std::uint32_t>(index > 0 ? index - 1 : size + index);
+                              printable(written.substr(0, written.find('/'))), valid_indices(count, so_far)));
+    return static_cast<std::uint32_t>(index > 0 ? index - 1 : before + index);
+  }
+
+  static std::string valid_indices(std::size_t count, std::size_t so_far) {
+    if (count == 0) return "the file has none";
+    const std::string all = fmt::format("valid are 1 .. {}", count);
+    return so_far == 0 ? all : all + fmt::format(" and -{} .. -1", so_far);
   }
 
   /// The same, or none: where it is 0, or the file has none of the kind.
-  std::uint32_t read_optional_index(std::string_view& text, std::size_t count, const char* what, Oddity zero,
-                                    Oddity none) {
+  std::uint32_t read_optional_index(std::string_view& text, std::size_t count, std::size_t so_far,
+                                    const char* what, Oddity zero, Oddity none) {
     std::string_view after = text;
     const long long index = read_written_index(after, what);
-    if (index != 0 && count != 0) return read_index(text, count, what);
+    const bool may_come = index > 0 && !vertices_are_read_;
+    if (index != 0 && (count != 0 || may_come)) return read_index(text, count, so_far, what);
     text = after;
     note(index == 0 ? zero : none);
     return Scene::no_index;
@@ -184,17 +215,17 @@ class ObjReader {
   Corner read_corner(std::string_view text) {
     const std::string_view whole = text;
     Corner corner;
-    corner.position = read_index(text, mesh_.positions.size(), "vertex");
+    corner.position = read_index(text, mesh_.positions.size(), so_far_.positions, "vertex");
     if (text.starts_with('/')) {
       text.remove_prefix(1);
       if (!text.empty() && text.front() != '/')
-        corner.uv = read_optional_index(text, mesh_.uvs.size(), "texture coordinate", Oddity::uv_index_0,
-                                        Oddity::no_uvs);
+        corner.uv = read_optional_index(text, mesh_.uvs.size(), so_far_.uvs, "texture coordinate",
+                                        Oddity::uv_index_0, Oddity::no_uvs);
       if (text.starts_with('/')) {
         text.remove_prefix(1);
         if (!text.empty())
-          corner.normal = read_optional_index(text, mesh_.normals.size(), "normal", Oddity::normal_index_0,
-                                              Oddity::no_normals);
+          corner.normal = read_optional_index(text, mesh_.normals.size(), so_far_.normals, "normal",
+                                              Oddity::normal_index_0, Oddity::no_normals);
       }
     }
     if (!text.empty())
@@ -239,6 +270,11 @@ class ObjReader {
     obj_.libraries.push_back({std::string(names), lines_.place()});
   }
 
+  /// Of each kind, before the line at hand.
+  struct VertexCounts {
+    std::size_t positions = 0, normals = 0, uvs = 0;
+  };
+
   /// Where an oddity is met first, and how often.
   struct Met {
     SourcePlace place;
@@ -251,6 +287,8 @@ class ObjReader {
   ObjFile obj_;
   Mesh& mesh_ = obj_.mesh;
   MeshFaces faces_{mesh_, [this] { return lost_corner_.value_or(lines_.place()); }};
+  VertexCounts so_far_;
+  bool vertices_are_read_ = false;
   bool names_objects_ = false;
   std::uint32_t smoothing_ = 0;  // the group of the faces at hand
   ObjFile::UsedMaterial current_{{}, false, false};
@@ -263,7 +301,13 @@ class ObjReader {
 }  // namespace
 
 ObjFile parse_obj(std::string_view text, const std::filesystem::path& file, WarningList& warnings) {
-  return ObjReader(text, file, warnings).read();
+  try {
+    return ObjReader(text, file, warnings).read();
+  } catch (const FacesFirst&) {
+    ObjReader reader(text, file, warnings);
+    reader.read_vertices();
+    return reader.read();
+  }
 }
 
 ObjFile read_obj(const std::filesystem::path& file, WarningList& warnings) {

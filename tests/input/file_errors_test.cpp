@@ -82,6 +82,7 @@ void nothing(const Folder&) {}
 const std::vector<Case> cases = {
     // What is no file
     {"missing scene", nothing, {"info", "gone.json"}, "gone.json: does not exist"},
+    {"missing file of no kind", nothing, {"info", "gone"}, "gone: does not exist"},
     {"a folder as scene",
      [](const Folder& f) { fs::create_directory(f.folder / "d.json"); },
      {"info", "d.json"},

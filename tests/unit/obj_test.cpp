@@ -75,6 +75,23 @@ TEST_CASE("OBJ files come as they are written") {
   CHECK(load_text(old_mac).triangles.size() == 1);
 }
 
+TEST_CASE("faces may come before their vertices") {
+  const std::string corners = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n",
+                    uvs = "vt 0 0\nvt 1 0\nvt 0 1\n", normal = "vn 0 0 1\n", face = "f 1/1/1 2/2/1 3/3/1\n";
+  const Scene usual = load_text(corners + uvs + normal + face);
+  for (const std::string& text : {face + corners + uvs + normal, corners + face + uvs + normal,
+                                  corners + "f -3/1/1 -2/2/1 -1/3/1\nv 1 1 0\n" + uvs + normal}) {
+    CAPTURE(text);
+    const Scene scene = load_text(text);
+    CHECK(scene.warnings.size() == usual.warnings.size());
+    REQUIRE(scene.triangles.size() == 1);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CHECK(corner(scene, 0, i) == corner(usual, 0, i));
+      CHECK(scene.uvs[scene.triangle_uvs[0][i]] == usual.uvs[usual.triangle_uvs[0][i]]);
+    }
+  }
+}
+
 TEST_CASE("coordinates are read in double and re-centred before they are rounded") {
   const Scene scene = load_text("v 1e7 0 0\nv 10000000.25 0 0\nv 1e7 0.125 0\nf 1 2 3\n");
   CHECK(corner(scene, 0, 1).x - corner(scene, 0, 0).x == 0.25);
