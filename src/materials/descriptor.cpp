@@ -178,6 +178,8 @@ double lobe_aspect(const Material& m, const SurfaceValues<double>& values) {
 }
 
 LobeWidths lobe_widths(const Material& m, double alpha) {
+  // Bare metal has nothing below or above its lobe; and tables of round ones take a fifth of the time.
+  if (m.type == MaterialType::principled && m.is_bare_metal() && m.clearcoat == 0) return {alpha};
   return {alpha, lobe_aspect(m), has_stretched_lobe(m) && m.map(SurfaceParameter::anisotropy).used()};
 }
 
