@@ -28,6 +28,7 @@ inline RenderOptions as_reference(RenderOptions options) {
   options.sampler = SamplerKind::independent;
   options.reuse.automatic = true;
   options.isa = "auto";
+  options.accel = AccelKind::bvh;  // takes a third less time than the list, in double
   return options;
 }
 
