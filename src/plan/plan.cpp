@@ -97,6 +97,7 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
   if (options.reuse.automatic && needs.specular) plan.few_suffixes = plan.suffixes / 2;
   plan.narrow_coats = needs.narrow_coats;
+  plan.matte = !needs.specular && !needs.glossy && !needs.coverage && !needs.glass_shares;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
   plan.reconstruct = options.reconstruct != Switch::off;
   plan.edge_samples = edge_samples(needs, options);

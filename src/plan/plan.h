@@ -29,6 +29,7 @@ struct Plan {
   double gain_of_regions = 1;          ///< how many times smaller they make a light sample's mean square
   bool lights_by_solid_angle = false;  ///< points on them, where that can be had
   bool narrow_coats = false;           ///< of surfaces, as SceneNeeds has it
+  bool matte = false;                  ///< no surface leads paths of a pixel's own, or is there by chance
   BuildQuality build = BuildQuality::fast;  ///< of the tree
   double gain_of_light_paths = 0;           ///< over chance, as a pilot saw it; 0: none was asked
   double gain_of_reconstruction = 0;        ///< over means, likewise

@@ -59,6 +59,9 @@ SplatSums try_light_paths(const Pilot& pilot, KernelOptions options, const Light
 struct Ways {
   TechniqueFigures plain, shared;
   bool narrow_coats = false;  ///< as in Pilot
+  bool matte = false;         ///< likewise
+  double growth = 1;          ///< see growth_beside_plain
+  double camera_error = 0;    ///< of plain and of shared paths, besides their own
 };
 
 /// Errors times costs; `few`: that of shared paths is with half of the suffixes.
@@ -85,6 +88,20 @@ double growth_beside_plain(const Ways& ways) {
   return growth * growth;  // 4 to 64 are two steps of 1 to 4
 }
 
+/// Without what all techniques have alike: it is of pixels' own.
+TechniqueFigures without_camera_error(TechniqueFigures f) {
+  const double own = std::max(f.own_share * f.error - f.camera_error, 0.0);
+  f.error -= f.camera_error;
+  f.own_share = f.error > 0 ? std::min(own / f.error, 1.0) : 0;
+  return f;
+}
+
+/// What all techniques have alike, in 64 samples. Within pixels these are stratified: where an edge divides a
+/// pixel the variance falls as N^-1.5 (Mitchell 1996).
+double camera_error(const TechniqueFigures& f, Samples samples) {
+  return f.camera_error * std::sqrt(static_cast<double>(samples) / 64);
+}
+
 /// How much of the noise of shared paths is taken for pixels' own, from 0 to 1: all of it where most is. Rare
 /// bright samples that no tile has met are pixels' own, too.
 double taken_for_own(double own_share) {
@@ -94,7 +111,8 @@ double taken_for_own(double own_share) {
 
 /// Bright samples in single pixels of a tile that shares its paths came by paths of these pixels alone, which
 /// plain paths find as rarely: an error of both. The more samples, the brighter ones are met, so it counts
-/// several times. Not where neighbours' noise is alike: there shared paths are as bright themselves.
+/// several times. Not where neighbours' noise is alike: there shared paths are as bright themselves. In matte
+/// scenes pixels have no paths of their own.
 double common_error(const TechniqueFigures& shared) {
   constexpr double missed = 3;
   return missed * shared.lonely_error * taken_for_own(shared.own_share);
@@ -150,8 +168,9 @@ Products products_of(const Ways& ways, const Ways& rest, double of_plain, double
                      bool few_may_do) {
   constexpr double error_of_half = 1.55, cost_of_none = 0.63, gains_much = 2.25;
   const double plain_cost = ways.plain.cost + rays, cost = ways.shared.cost + rays;
-  const double error = rest.shared.error * growth_beside_plain(rest);
-  const double common = std::max(common_error(rest.shared), unseen_error(rest));
+  const double error = rest.shared.error * rest.growth;
+  const double by_own_paths = rest.matte ? 0 : std::max(common_error(rest.shared), unseen_error(rest));
+  const double common = by_own_paths + rest.camera_error;
   const double plain = (plain_error(rest) + of_plain + common) * plain_cost;
   const double all = (error + of_shared + common) * cost;
   const double half = (error_of_half * error + of_shared + common) * (cost_of_none * plain_cost + cost) / 2;
@@ -193,23 +212,34 @@ std::vector<KernelOptions> techniques_of(const KernelOptions& options, bool both
 /// What gains are computed from, but for the figures of tiles.
 struct Question {
   OpenChoices open;
-  bool by_lights;           ///< caustics may be brought by light paths
-  bool both;                ///< it is open whether they are
-  bool tried;               ///< then tiles were tried with caustics by chance, too
-  bool list, narrow_coats;  ///< as in Pilot
-  std::size_t ways;         ///< 2: shared and plain paths; 1: plain ones
+  bool by_lights;                  ///< caustics may be brought by light paths
+  bool both;                       ///< it is open whether they are
+  bool tried;                      ///< then tiles were tried with caustics by chance, too
+  bool list, narrow_coats, matte;  ///< as in Pilot
+  std::size_t ways;                ///< 2: shared and plain paths; 1: plain ones
+  Samples samples;                 ///< of the tiles' figures
   SplatSums splats;
 };
 
+Ways ways_of(const Question& q, const TechniqueFigures& plain, const TechniqueFigures& shared) {
+  Ways ways{plain, shared, q.narrow_coats, q.matte};
+  ways.growth = growth_beside_plain(ways);
+  ways.camera_error = camera_error(shared, q.samples);
+  ways.plain = without_camera_error(plain);
+  ways.shared = without_camera_error(shared);
+  return ways;
+}
+
 /// `figures`: of techniques_of.
 Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) {
-  const Ways rest{figures[0], figures[q.ways - 1], q.narrow_coats};
+  const TechniqueFigures& shared = figures[q.ways - 1];
+  const Ways rest = ways_of(q, figures[0], shared);
   Gains gains;
   if (!q.by_lights) {
     const Products by_chance = products_of(rest, rest, 0, 0, 0, q.open.few);
     gains.sharing_by_chance = by_chance.sharing();
     gains.few_by_chance = by_chance.few;
-    gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, 0, 0, q.list);
+    gains.reconstruction_by_chance = gain_of_reconstruction(shared, 0, 0, q.list);
     return gains;
   }
   const double rays = q.splats.rays;
@@ -217,26 +247,26 @@ Gains gains_of(const Question& q, const std::vector<TechniqueFigures>& figures) 
   const Products by_light = products_of(rest, rest, caustics.by_light, caustics.by_light, rays, q.open.few);
   gains.sharing_by_lights = by_light.sharing();
   gains.few_by_lights = by_light.few;
-  gains.reconstruction_by_lights = gain_of_reconstruction(rest.shared, caustics.by_light, rays, q.list);
+  gains.reconstruction_by_lights = gain_of_reconstruction(shared, caustics.by_light, rays, q.list);
   const double fewer = caustics.by_light / 2;
   const Products twice = products_of(rest, rest, fewer, fewer, 2 * rays, q.open.few);
   if (twice.plain > 0) gains.twice_with_plain = by_light.plain / twice.plain;
   if (twice.shared > 0) gains.twice_with_shared = by_light.shared / twice.shared;
   if (!q.both || !(max_component(q.splats.radiance) > 0)) return gains;
-  const Ways chance = q.tried ? Ways{figures[q.ways], figures.back(), q.narrow_coats} : rest;
+  const Ways chance = q.tried ? ways_of(q, figures[q.ways], figures.back()) : rest;
   const double left = q.tried ? left_by_sharing(rest, chance, caustics.by_chance) : 1;
   const Products by_chance =
       products_of(chance, rest, caustics.by_chance, caustics.by_chance * left, 0, q.open.few);
   gains.sharing_by_chance = by_chance.sharing();
   gains.few_by_chance = by_chance.few;
-  gains.reconstruction_by_chance = gain_of_reconstruction(rest.shared, caustics.by_chance * left, 0, q.list);
+  gains.reconstruction_by_chance = gain_of_reconstruction(shared, caustics.by_chance * left, 0, q.list);
   gains.light_paths = by_chance.least(q.open.sharing) / by_light.least(q.open.sharing);
   return gains;
 }
 
 /// Whether light paths do better than chance even if sharing leaves as little of that as it can.
 bool light_paths_win(const Question& q, const std::vector<TechniqueFigures>& figures) {
-  const Ways rest{figures[0], figures[q.ways - 1], q.narrow_coats};
+  const Ways rest = ways_of(q, figures[0], figures[q.ways - 1]);
   const CausticErrors caustics(q.splats, rest.plain.brightness);
   const double least = caustics.by_chance / tile_pixels;
   const Products by_light =
@@ -331,7 +361,8 @@ Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenCho
   TileTrials trials(pilot, techniques_of(options, false), Samples::one);
   if (!trials.try_more()) return {};
   const std::size_t ways = options.suffixes > 0 ? 2 : 1;
-  Question q{open, options.light_paths, both, false, pilot.list, pilot.narrow_coats, ways, {}};
+  Question q{open, options.light_paths, both, false, pilot.list, pilot.narrow_coats, pilot.matte,
+             ways, trials.samples(),    {}};
   if (options.light_paths) q.splats = try_light_paths(pilot, options, light_paths_job);
   const double image = cost_of_few_samples(pilot, q, trials);
   double left = share * image - trials.cost();
@@ -344,7 +375,8 @@ Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenCho
     if ((limited && next > left) || (!(four && more_ways) && is_clear(q, trials, next / image))) break;
     if (four && trials.samples() == Samples::one) {
       q.tried = chance_may_win;
-      trials = TileTrials(pilot, techniques_of(options, q.tried), Samples::four);
+      q.samples = Samples::four;
+      trials = TileTrials(pilot, techniques_of(options, q.tried), q.samples);
     }
     if (!trials.try_more()) break;
     left -= next;

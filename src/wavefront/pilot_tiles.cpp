@@ -191,11 +191,28 @@ double difference_error(const TileRun& run, const Vec3d& brightness) {
   return error / 2 * tile_pixels / pairs;
 }
 
+/// The covariance of what two techniques make of pixels, as an error.
+double camera_error(const TileRun& one, const TileRun& other, const Vec3d& brightness) {
+  const auto difference = [](const TileRun& run, std::size_t pixel) {  // of the replicates' means
+    Vec3d sum;
+    for (std::size_t s = 0; s < run.samples; ++s) sum += run.sample[0][s][pixel] - run.sample[1][s][pixel];
+    return sum / double(run.samples);
+  };
+  double sum = 0;
+  for (std::size_t i = 0; i < tile_pixels; ++i) {
+    const Vec3d product = difference(one, i) * difference(other, i);
+    for (int c = 0; c < 3; ++c) sum += product[c] / (brightness[c] * brightness[c] + 0.01);
+  }
+  return std::max(sum, 0.0) / (replicates * tile_pixels) * double(one.samples);
+}
+
 /// Errors are relative to what the techniques make of the tile on average.
-std::vector<TechniqueFigures> figures_of(const std::vector<GroupRun>& runs, std::size_t tile) {
+std::vector<TechniqueFigures> figures_of(const std::vector<GroupRun>& runs, std::size_t tile, bool matte) {
   Vec3d brightness;
   for (const GroupRun& run : runs) brightness += mean_of_tile(run.tiles[tile]) / double(runs.size());
   std::vector<TechniqueFigures> figures;
+  const bool alike = matte && runs.size() > 1;
+  const double of_camera = alike ? camera_error(runs[0].tiles[tile], runs[1].tiles[tile], brightness) : 0;
   for (const GroupRun& group : runs) {
     const TileRun& run = group.tiles[tile];
     const PixelErrors errors = pixel_errors(run, run.samples, brightness);
@@ -203,7 +220,7 @@ std::vector<TechniqueFigures> figures_of(const std::vector<GroupRun>& runs, std:
     const double tiles = static_cast<double>(group.tiles.size());
     figures.push_back({mean_of_tile(run), error, run.samples > 1 ? relative_error(run, 1, brightness) : 0,
                        error > 0 ? difference_error(run, brightness) / error : 0, lonely_error(errors),
-                       cost_of(group) / (tiles * samples_of(run))});
+                       of_camera, cost_of(group) / (tiles * samples_of(run))});
   }
   return figures;
 }
@@ -247,6 +264,7 @@ std::vector<TechniqueFigures> means_over(FiguresByTile by_tile) {
       means[k].error += tile[k].error * share;
       means[k].single_error += tile[k].single_error * share;
       means[k].lonely_error += tile[k].lonely_error * share;
+      means[k].camera_error += std::min(tile[k].camera_error, tile[k].error) * share;
       means[k].cost += tile[k].cost * share;
     }
   return means;
@@ -271,7 +289,7 @@ bool TileTrials::try_more() {
   const std::vector<GroupRun> runs =
       render_group(pilot_, techniques_, group, static_cast<std::size_t>(samples_));
   for (const GroupRun& run : runs) cost_ += cost_of(run);
-  for (std::size_t i = 0; i < group.size(); ++i) by_tile_.push_back(figures_of(runs, i));
+  for (std::size_t i = 0; i < group.size(); ++i) by_tile_.push_back(figures_of(runs, i, pilot_.matte));
   return true;
 }
 

@@ -20,6 +20,7 @@ struct Pilot {
   RenderJob render_job;
   double light_paths_per_pixel = 1;  ///< as in Plan
   bool narrow_coats = false;         ///< as in Plan
+  bool matte = false;                ///< likewise
 };
 
 /// Of one technique, means over pixels. Errors are the sum over channels of the variance over replicates,
@@ -32,7 +33,10 @@ struct TechniqueFigures {
   /// differences.
   double own_share = 1;
   double lonely_error = 0;  ///< of `error`, what single pixels have beyond all of their tile, in all tiles
-  double cost = 0;          ///< of a sample, in rays, of which what pixels gather is a fraction
+  /// Of `error`, what the techniques have alike, as their samples see the same places of a pixel: at edges,
+  /// borders of shadows, in textures. Found in matte scenes alone; elsewhere 0.
+  double camera_error = 0;
+  double cost = 0;  ///< of a sample, in rays, of which what pixels gather is a fraction
 };
 
 /// Samples of a tile, in each of its replicates.

@@ -113,7 +113,8 @@ class Wavefront final : public PreparedIntegrator {
                                                                            tile, scratch(), result);
               },
               wavefront_.plan_.light_paths_per_pixel,
-              wavefront_.plan_.narrow_coats};
+              wavefront_.plan_.narrow_coats,
+              wavefront_.plan_.matte};
     }
     LightPathsJob light_paths() {
       return [this](const KernelOptions& options, const LightPathJob& job, const SplatSink& sink) {

@@ -92,3 +92,14 @@ TEST_CASE("under leaves paths are plain by default, in the box they are shared, 
   }
   CHECK(pixels(leaves, options) == pixels(leaves, plain));
 }
+
+TEST_CASE("small images of matte scenes share their paths, though single samples show edges above all") {
+  RenderOptions options;
+  options.width = options.height = 96;
+  options.spp = 1;
+  for (const char* name : {"details/colours", "lights/point", "lights/spot"}) {
+    const Scene scene = load_scene(std::string(CASTRAY_ROOT) + "/tests/golden/" + name + ".json");
+    CAPTURE(name);
+    CHECK_THAT(render(scene, options).film.key, Catch::Contains("sharing=on"));
+  }
+}
