@@ -361,8 +361,16 @@ Gains find_gains(const Pilot& pilot, const KernelOptions& options, const OpenCho
   TileTrials trials(pilot, techniques_of(options, false), Samples::one);
   if (!trials.try_more()) return {};
   const std::size_t ways = options.suffixes > 0 ? 2 : 1;
-  Question q{open, options.light_paths, both, false, pilot.list, pilot.narrow_coats, pilot.matte,
-             ways, trials.samples(),    {}};
+  Question q{.open = open,
+             .by_lights = options.light_paths,
+             .both = both,
+             .tried = false,
+             .list = pilot.list,
+             .narrow_coats = pilot.narrow_coats,
+             .matte = pilot.matte,
+             .ways = ways,
+             .samples = trials.samples(),
+             .splats = {}};
   if (options.light_paths) q.splats = try_light_paths(pilot, options, light_paths_job);
   const double image = cost_of_few_samples(pilot, q, trials);
   double left = share * image - trials.cost();
