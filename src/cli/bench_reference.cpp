@@ -25,12 +25,19 @@ Image read_radiance(const std::string& file) {
   return image.image;
 }
 
-/// The film of an earlier run, if `file` holds one of this very render; what another version of the program
-/// left there is made anew.
-std::optional<Film> kept_film(const std::filesystem::path& file, const std::string& key) try {
+/// Whether a film's key is `key`, or that with what pilots decided behind it.
+bool is_of(const std::string& film_key, const std::string& key) {
+  return film_key.starts_with(key) && (film_key.size() == key.size() || film_key[key.size()] == ';');
+}
+
+/// The film of an earlier run, if `file` holds one of this very render with enough samples, or one that it
+/// can go on from; what another version of the program left there is made anew.
+std::optional<Film> kept_film(const std::filesystem::path& file, const std::string& key,
+                              std::uint64_t samples) try {
   if (!std::filesystem::exists(file)) return std::nullopt;
   Film film = read_film(file);
-  if (film.key != key || film.samples.size() != 1 || film.samples[0].first != 0) return std::nullopt;
+  if (!is_of(film.key, key) || film.samples.size() != 1 || film.samples[0].first != 0) return std::nullopt;
+  if (film.key != key && film.samples[0].count < samples) return std::nullopt;  // pilots may decide otherwise
   return film;
 } catch (const InputError&) {
   return std::nullopt;
@@ -68,7 +75,7 @@ ReferencePair cached_references(const Scene& scene, const RenderRequest& request
     const std::string key = make_job(facts, options, request.fault).key;
     const auto file =
         cache / fmt::format("{}-{}x{}-{}.film", scene.name, options.width, options.height, "AB"[i]);
-    std::optional<Film> film = kept_film(file, key);
+    std::optional<Film> film = kept_film(file, key, options.spp);
     if (!film || film->samples[0].count < options.spp) {
       const auto tell = [&](const Progress& now) { return progress(i, now), true; };
       if (!prepared) prepared = prepare(scene, request);

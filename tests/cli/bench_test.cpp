@@ -155,6 +155,30 @@ TEST_CASE("bench keeps the references it made, and takes given ones") {
   CHECK(relmse("again.json") == relmse("made.json"));
 }
 
+TEST_CASE("bench keeps references for which pilots decided how they are rendered") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> bench = {"bench",
+                                          cornell,
+                                          "--size",
+                                          "64x64",
+                                          "--spp",
+                                          "1",
+                                          "--seeds",
+                                          "1",
+                                          "-q",
+                                          "--cache",
+                                          "cache",
+                                          "--reference-spp",
+                                          "2",
+                                          "--reference-flags",
+                                          "--reconstruct off"};
+  REQUIRE(run_castray(bench, folder.path()).exit_code == 0);
+  const auto kept = folder / "cache/cornell_box-64x64-A.film";
+  const auto written = std::filesystem::last_write_time(kept);
+  REQUIRE(run_castray(bench, folder.path()).exit_code == 0);
+  CHECK(std::filesystem::last_write_time(kept) == written);
+}
+
 TEST_CASE("what bench cannot use gets one line and exit code 2") {
   const TemporaryFolder folder;
   const auto refused = [&](std::vector<std::string> more, const std::string& message) {
