@@ -16,9 +16,8 @@ namespace castray {
 /// thinned by 1 - coverage at each crossing.
 ///
 /// The share of a window that is there is what of the light does not go straight on (Material::is_window), of
-/// the colour that passes best; what passes is dimmed by `tint`. Both are by
-/// the angle between the ray and the normal; which is that of the vertices where there are such, without the
-/// bends of normal and bump maps.
+/// the colour that passes best; `tint` dims the others. Both depend on the angle between the ray and the
+/// normal: that of the vertices where there are such, without the bends of normal and bump maps.
 class Coverage {
  public:
   /// The scene must outlive this.
