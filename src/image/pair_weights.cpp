@@ -1,6 +1,9 @@
 #include "image/pair_weights.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "castray/vec.h"
 #include "core/vector_clones.h"
@@ -32,10 +35,10 @@ void read_luminance(const DifferenceSums& sums, int half, int y, Term term, floa
   const std::int64_t *red = sums.sums(half, y, term, 0), *green = sums.sums(half, y, term, 1),
                      *blue = sums.sums(half, y, term, 2);
   const std::uint32_t* count = sums.counts(half, y, term);
-  const Vec3d unit(DifferenceSums::unit_over_scale);
+  const float unit = DifferenceSums::unit_over_scale;
   for (int x = 0; x < sums.width(); ++x) {
-    const Vec3d sum{static_cast<double>(red[x]), static_cast<double>(green[x]), static_cast<double>(blue[x])};
-    out[x] = count[x] > 0 ? static_cast<float>(luminance(sum * unit) / count[x]) : 0;
+    const Vec3f sum{static_cast<float>(red[x]), static_cast<float>(green[x]), static_cast<float>(blue[x])};
+    out[x] = count[x] > 0 ? luminance(sum) * (unit / static_cast<float>(count[x])) : 0;
   }
 }
 

@@ -52,7 +52,7 @@ class RightSide {
       if (y < begin) continue;
       difference_.read(sums_, half_, y, Term::right);
       for (std::size_t c = 0; c < 3; ++c) {
-        const double* mean = here_.channel[c].data();
+        const float* mean = here_.channel[c].data();
         find_pulls(weights_.right.row(y), c, mean, mean + 1, sums_.width() - 1, right_[c].data() + 1);
         add_up(c, b[c].row(y));
       }
@@ -63,11 +63,10 @@ class RightSide {
   using Pulls = std::array<std::vector<float>, 3>;
 
   CASTRAY_VECTOR_CLONES
-  void find_pulls(const float* weight, std::size_t c, const double* mean, const double* neighbour, int count,
+  void find_pulls(const float* weight, std::size_t c, const float* mean, const float* neighbour, int count,
                   float* __restrict pull) const {
-    const double* difference = difference_.channel[c].data();
-    for (int x = 0; x < count; ++x)
-      pull[x] = weight[x] * static_cast<float>(difference[x] - (neighbour[x] - mean[x]));
+    const float* difference = difference_.channel[c].data();
+    for (int x = 0; x < count; ++x) pull[x] = weight[x] * (difference[x] - (neighbour[x] - mean[x]));
   }
 
   CASTRAY_VECTOR_CLONES

@@ -1,6 +1,7 @@
 #include "image/screened_poisson.h"
 
 #include <algorithm>
+#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,23 +13,22 @@ namespace castray {
 namespace {
 
 /// How far each cycle goes in its direction: Chebyshev's polynomial for cycles that leave at most 0.7 of an
-/// error. Of what they would leave more of they leave less, too. On coarser grids, which take little time,
-/// two cycles instead of one (a W-cycle) let those of the finest grid leave so little.
+/// error. Of what they would leave more of they leave less, too. On the first of the coarser grids two cycles
+/// instead of one let those of the finest grid leave so little.
 constexpr float cycle_steps[] = {2.883f, 1.538f, 1.049f}, coarse_steps[] = {2.484f, 1.114f}, one_step[] = {1};
-constexpr int worth_two_cycles = 16;  ///< side in pixels
 /// Of two Jacobi steps, as Chebyshev's polynomial has them for the upper three quarters of the spectrum.
 constexpr float first_step = 0.5617f, second_step = 1.389f;
 constexpr int worth_threads = 1 << 16;  ///< pixels
-constexpr int coarsest_side = 2, coarsest_sweeps = 4;
+constexpr int coarsest_side = 2, coarsest_steps = 8;
 
 /// One grid of the hierarchy. Each coarser one has a pixel for every 2x2 (Brandt 1977).
 struct Level {
   PixelCouplings a;
   PixelPlane inverse_diagonal;
-  PixelPlanes b, x, next;
+  PixelPlanes b, x;  ///< what is left of b when x is taken out of it, and x
 
   explicit Level(PixelCouplings couplings) : a(std::move(couplings)), inverse_diagonal(a.width, a.height) {
-    for (PixelPlanes* planes : {&b, &x, &next})
+    for (PixelPlanes* planes : {&b, &x})
       for (PixelPlane& plane : *planes) plane = PixelPlane(a.width, a.height);
   }
 };
@@ -36,11 +36,28 @@ struct Level {
 /// The end of the cache line in which a row of so many pixels ends.
 int end_of(int width) { return (width + PixelPlane::line - 1) / PixelPlane::line * PixelPlane::line; }
 
-/// The last rows of three channels between two sweeps, in the cache of a thread.
+/// The values of a cache line. Loops go over all lines of a row: the values after its last pixel are zero,
+/// and stay so.
+using Line [[gnu::vector_size(PixelPlane::line * sizeof(float))]] = float;
+using HalfLine [[gnu::vector_size(PixelPlane::line / 2 * sizeof(float))]] = float;
+
+// Vectors are returned in arguments: functions for several instruction sets have no one way to return them.
+
+template <class Vector>
+void load(const float* from, Vector& values) {
+  std::memcpy(&values, from, sizeof values);
+}
+
+template <class Vector>
+void store(const Vector& values, float* to) {
+  std::memcpy(to, &values, sizeof values);
+}
+
+/// Three channels of the last rows of a step, in the cache of a thread.
 class RecentRows {
  public:
   explicit RecentRows(int width) : plane_(width, 3 * kept) {}
-  float* row(std::size_t c, int y) { return plane_.row(static_cast<int>(c) * kept + (y & (kept - 1))); }
+  float* row(int c, int y) { return plane_.row(c * kept + (y & (kept - 1))); }
 
   static constexpr int kept = 4;  ///< three to read around one, and one to write; a power of 2
 
@@ -48,88 +65,261 @@ class RecentRows {
   PixelPlane plane_;
 };
 
-/// What a thread that sweeps over the rows begin <= y < end has between its sweeps.
+/// How many rows beyond those that a thread writes it needs of b.
+constexpr int rows_outside = 6;
+
+/// What a thread that works on the rows begin <= y < end has of its own.
 struct Band {
   int begin = 0, end = 0;
-  RecentRows once, twice;  ///< relaxed
-  std::vector<float> residual;
+  RecentRows started, relaxed, improved, correction;  ///< of a cycle
+  RecentRows restarted, prepared;                     ///< of the next one, before its coarser grids
+  PixelPlane outside;   ///< b of the rows around these, as other threads may change it
+  PixelPlane residual;  ///< of three channels
 
-  explicit Band(int width) : once(width), twice(width), residual(static_cast<std::size_t>(end_of(width))) {}
+  explicit Band(int width)
+      : started(width),
+        relaxed(width),
+        improved(width),
+        correction(width),
+        restarted(width),
+        prepared(width),
+        outside(width, 2 * 3 * rows_outside),
+        residual(width, 3) {}
+
+  float* b(Level& level, int c, int y) {
+    if (y >= begin && y < end) return level.b[static_cast<std::size_t>(c)].row(y);
+    const int row = y < begin ? y - begin + rows_outside : y - end + rows_outside;
+    return outside.row((c * 2 + (y < begin ? 0 : 1)) * rows_outside + (y < begin ? row : row - rows_outside));
+  }
 };
 
-/// What the equations of a row say of its values and of those around. Loops go to the end of its last cache
-/// line: the values after the last pixel are zero and stay so.
+/// What the equations of a row say of its values and of those around.
 struct RowEquations {
   int end;
-  const float *screen, *right, *below, *above, *inverse_diagonal, *b;
+  const float *screen, *right, *below, *above, *inverse_diagonal;
 
-  RowEquations(const Level& level, std::size_t c, int y)
+  RowEquations(const Level& level, int y)
       : end(end_of(level.a.width)),
         screen(level.a.screen.row(y)),
         right(level.a.right.row(y)),
         below(level.a.below.row(y)),
         above(level.a.below.row(y - 1)),
-        inverse_diagonal(level.inverse_diagonal.row(y)),
-        b(level.b[c].row(y)) {}
+        inverse_diagonal(level.inverse_diagonal.row(y)) {}
 };
 
-/// A row and those above and below it.
-struct RowsAround {
-  const float *row, *up, *down;
+/// The couplings of a line's pixels to those around.
+struct LineCouplings {
+  Line left, right, above, below;
 
-  RowsAround(const PixelPlane& plane, int y)
-      : row(plane.row(y)), up(plane.row(y - 1)), down(plane.row(y + 1)) {}
-  RowsAround(RecentRows& rows, std::size_t c, int y)
-      : row(rows.row(c, y)), up(rows.row(c, y - 1)), down(rows.row(c, y + 1)) {}
+  LineCouplings(const RowEquations& a, int i) {
+    load(a.right + i - 1, left);
+    load(a.right + i, right);
+    load(a.above + i, above);
+    load(a.below + i, below);
+  }
+};
+
+/// A line's values and those around.
+struct LinesAround {
+  Line here, left, right, above, below;
+
+  LinesAround(RecentRows& rows, int c, int y, int i) {
+    const float* row = rows.row(c, y);
+    load(row + i, here);
+    load(row + i - 1, left);
+    load(row + i + 1, right);
+    load(rows.row(c, y - 1) + i, above);
+    load(rows.row(c, y + 1) + i, below);
+  }
+
+  void relax(const LineCouplings& a, const Line& inverse_diagonal, const Line& b, float step,
+             Line& next) const {
+    const Line pull = b + ((a.right * right + a.left * left) + (a.below * below + a.above * above));
+    next = here + step * (inverse_diagonal * pull - here);
+  }
+  /// What the equations make of the values.
+  void apply(const LineCouplings& a, const Line& screen, Line& product) const {
+    product = screen * here + ((a.right * (here - right) + a.left * (here - left)) +
+                               (a.below * (here - below) + a.above * (here - above)));
+  }
 };
 
 /// A damped Jacobi step from zero.
-void start(const RowEquations& a, float* __restrict next) {
-  for (int i = 0; i < a.end; ++i) next[i] = first_step * a.inverse_diagonal[i] * a.b[i];
-}
-
-/// The value of pixel i after a damped Jacobi step.
-inline float relaxed(const RowEquations& a, float step, const RowsAround& from, int i) {
-  const float *x = from.row, *up = from.up, *down = from.down;
-  const float pull = a.b[i] + ((a.right[i] * x[i + 1] + a.right[i - 1] * x[i - 1]) +
-                               (a.below[i] * down[i] + a.above[i] * up[i]));
-  return x[i] + step * (a.inverse_diagonal[i] * pull - x[i]);
-}
-
-void relax(const RowEquations& a, float step, const RowsAround& from, float* __restrict next) {
-  for (int i = 0; i < a.end; ++i) next[i] = relaxed(a, step, from, i);
-}
-
-/// From `next`, or from zero, so far in the direction of a relaxed row.
-void go_further(const RowEquations& a, const RowsAround& from, float further, bool from_zero,
-                float* __restrict next) {
-  if (from_zero)
-    for (int i = 0; i < a.end; ++i) next[i] = further * relaxed(a, first_step, from, i);
-  else
-    for (int i = 0; i < a.end; ++i) next[i] += further * (relaxed(a, first_step, from, i) - next[i]);
-}
-
-void find_residual(const RowEquations& a, const RowsAround& from, float* __restrict residual) {
-  const float *x = from.row, *up = from.up, *down = from.down;
-  for (int i = 0; i < a.end; ++i)
-    residual[i] = (a.b[i] - a.screen[i] * x[i]) +
-                  ((a.right[i] * (x[i + 1] - x[i]) + a.right[i - 1] * (x[i - 1] - x[i])) +
-                   (a.below[i] * (down[i] - x[i]) + a.above[i] * (up[i] - x[i])));
-}
-
-/// Adds values summed over pairs of pixels.
-void add_pairs(const float* values, int width, float* __restrict sums) {
-  const int pairs = end_of(width) / 2;
-  for (int i = 0; i < pairs; ++i) sums[i] += values[2 * i] + values[2 * i + 1];
-}
-
-/// x with the corrections of a coarser grid, each of which is that of two pixels.
-void add_coarse(const float* x, const float* coarse, int width, float* __restrict sum) {
-  const int pairs = end_of(width) / 2;
-  for (int i = 0; i < pairs; ++i) {
-    sum[2 * i] = x[2 * i] + coarse[i];
-    sum[2 * i + 1] = x[2 * i + 1] + coarse[i];
+void start_row(Level& level, int y, Band& band, RecentRows& to) {
+  const RowEquations a(level, y);
+  float *b[3], *next[3];
+  for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y), next[c] = to.row(c, y);
+  for (int i = 0; i < a.end; i += PixelPlane::line) {
+    Line factor;
+    load(a.inverse_diagonal + i, factor);
+    factor *= first_step;
+    for (int c = 0; c < 3; ++c) {
+      Line value;
+      load(b[c] + i, value);
+      store(factor * value, next[c] + i);
+    }
   }
+}
+
+/// A damped Jacobi step; `write(line, c, i)` has what comes of line i of a channel.
+template <class Write>
+void relax_row(Level& level, int y, Band& band, float step, RecentRows& from, Write write) {
+  const RowEquations a(level, y);
+  const float* b[3];
+  for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y);
+  for (int i = 0; i < a.end; i += PixelPlane::line) {
+    const LineCouplings couplings(a, i);
+    Line inverse_diagonal;
+    load(a.inverse_diagonal + i, inverse_diagonal);
+    for (int c = 0; c < 3; ++c) {
+      Line right_side, next;
+      load(b[c] + i, right_side);
+      LinesAround(from, c, y, i).relax(couplings, inverse_diagonal, right_side, step, next);
+      write(next, c, i);
+    }
+  }
+}
+
+void relax_row(Level& level, int y, Band& band, float step, RecentRows& from, RecentRows& to) {
+  float* next[3];
+  for (int c = 0; c < 3; ++c) next[c] = to.row(c, y);
+  relax_row(level, y, band, step, from, [&](const Line& line, int c, int i) { store(line, next[c] + i); });
+}
+
+/// The same, with the corrections of a coarser grid, each of which is that of 2x2 pixels.
+void relax_row(Level& level, int y, Band& band, float step, RecentRows& from, const Level& coarse,
+               RecentRows& to) {
+  float* next[3];
+  const float* corrections[3];
+  for (int c = 0; c < 3; ++c)
+    next[c] = to.row(c, y), corrections[c] = coarse.x[static_cast<std::size_t>(c)].row(y / 2);
+  relax_row(level, y, band, step, from, [&](const Line& line, int c, int i) {
+    HalfLine half;
+    load(corrections[c] + i / 2, half);
+    store(line + __builtin_shufflevector(half, half, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7),
+          next[c] + i);
+  });
+  for (float* row : next) row[level.a.width] = 0;
+}
+
+/// x goes so far in the direction of the corrections.
+void go_further(Level& level, int y, Band& band, float further, bool from_zero) {
+  for (int c = 0; c < 3; ++c) {
+    const float* correction = band.correction.row(c, y);
+    float* x = level.x[static_cast<std::size_t>(c)].row(y);
+    for (int i = 0; i < end_of(level.a.width); i += PixelPlane::line) {
+      Line value{}, more;
+      if (!from_zero) load(x + i, value);
+      load(correction + i, more);
+      store(value + further * more, x + i);
+    }
+  }
+}
+
+/// Takes the corrections, so far as `further` tells, out of b.
+void take_out(Level& level, int y, Band& band, float further) {
+  const RowEquations a(level, y);
+  float* b[3];
+  for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y);
+  for (int i = 0; i < a.end; i += PixelPlane::line) {
+    const LineCouplings couplings(a, i);
+    Line screen;
+    load(a.screen + i, screen);
+    for (int c = 0; c < 3; ++c) {
+      Line right_side, product;
+      load(b[c] + i, right_side);
+      LinesAround(band.correction, c, y, i).apply(couplings, screen, product);
+      store(right_side - further * product, b[c] + i);
+    }
+  }
+}
+
+/// The sums of what is left over blocks of 2x2 become the coarser grid's b, after the second row of each.
+void restrict_row(Level& level, int y, Band& band, Level& coarse) {
+  const RowEquations a(level, y);
+  const float* b[3];
+  for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y);
+  for (int i = 0; i < a.end; i += PixelPlane::line) {
+    const LineCouplings couplings(a, i);
+    Line screen;
+    load(a.screen + i, screen);
+    for (int c = 0; c < 3; ++c) {
+      Line sum{}, right_side, product;
+      float* const residual = band.residual.row(c) + i;
+      if (y % 2 == 1) load(residual, sum);
+      load(b[c] + i, right_side);
+      LinesAround(band.prepared, c, y, i).apply(couplings, screen, product);
+      store(sum + (right_side - product), residual);
+    }
+  }
+  if (y % 2 == 0 && y + 1 < level.a.height) return;
+  for (int c = 0; c < 3; ++c) {
+    const float* residual = band.residual.row(c);
+    float* __restrict sums = coarse.b[static_cast<std::size_t>(c)].row(y / 2);
+    for (int i = 0; i < a.end / 2; ++i) sums[i] = residual[2 * i] + residual[2 * i + 1];
+  }
+}
+
+/// The place of a sweep over the rows of a band. Each step follows the one before it at a distance of one
+/// row, so that memory is read once for all.
+struct Place {
+  int first, row;  ///< of the first step
+
+  /// `work(y)` for the row that step `number` has come to. `to`: what it writes, which is zero around the
+  /// image.
+  template <class Work>
+  void step(int number, const Level& level, RecentRows* to, Work work) const {
+    const int y = row - number;
+    if (y < first + number) return;
+    if (y >= 0 && y < level.a.height) return work(y);
+    for (int c = 0; to && c < 3; ++c) std::fill_n(to->row(c, y), end_of(level.a.width), 0.f);
+  }
+};
+
+/// The first half of a cycle, steps from `number` on: two Jacobi steps from zero, and the coarser grid's b.
+void prepare(const Place& place, int number, Level& level, Band& band, Level& coarse) {
+  place.step(number, level, &band.restarted, [&](int y) { start_row(level, y, band, band.restarted); });
+  place.step(number + 1, level, &band.prepared,
+             [&](int y) { relax_row(level, y, band, second_step, band.restarted, band.prepared); });
+  place.step(number + 2, level, nullptr, [&](int y) { restrict_row(level, y, band, coarse); });
+}
+
+CASTRAY_VECTOR_CLONES
+void sweep_down(Level& level, Band& band, Level& coarse) {
+  for (int row = band.begin - 2; row < band.end + 2; ++row)
+    prepare({band.begin - 2, row}, 0, level, band, coarse);
+}
+
+/// The second half of a cycle: corrections of coarser grids, and two Jacobi steps. `further`: how far x goes
+/// in the direction of the result; it is taken out of b. With it goes the first half of the next cycle, if
+/// there is one.
+CASTRAY_VECTOR_CLONES
+void sweep_up(Level& level, Band& band, float further, bool first, bool last, Level& coarse) {
+  const int outside = last ? 3 : rows_outside;
+  for (int row = band.begin - outside; row < band.end + outside; ++row) {
+    const Place place{band.begin - outside, row};
+    place.step(0, level, &band.started, [&](int y) { start_row(level, y, band, band.started); });
+    place.step(1, level, &band.relaxed,
+               [&](int y) { relax_row(level, y, band, second_step, band.started, coarse, band.relaxed); });
+    place.step(2, level, &band.improved,
+               [&](int y) { relax_row(level, y, band, second_step, band.relaxed, band.improved); });
+    place.step(3, level, &band.correction, [&](int y) {
+      relax_row(level, y, band, first_step, band.improved, band.correction);
+      if (y >= band.begin && y < band.end) go_further(level, y, band, further, first);
+    });
+    if (last) continue;
+    place.step(4, level, nullptr, [&](int y) { take_out(level, y, band, further); });
+    prepare(place, 4, level, band, coarse);
+  }
+}
+
+/// What `sweep_up` needs of b while other threads change it.
+void keep_outside(Level& level, Band& band) {
+  for (std::size_t c = 0; c < 3; ++c)
+    for (int k = 0; k < rows_outside; ++k)
+      for (const int y : {band.begin - rows_outside + k, band.end + k})
+        if (y >= 0 && y < level.a.height)
+          std::copy_n(level.b[c].row(y), end_of(level.a.width), band.b(level, static_cast<int>(c), y));
 }
 
 CASTRAY_VECTOR_CLONES
@@ -162,75 +352,6 @@ void couple_coarse(const PixelCouplings& fine, int y, PixelCouplings& coarse) {
   }
 }
 
-/// A damped Jacobi step from x to `next`.
-CASTRAY_VECTOR_CLONES
-void step_all(Level& level, float step) {
-  for (std::size_t c = 0; c < 3; ++c)
-    for (int y = 0; y < level.a.height; ++y)
-      relax({level, c, y}, step, {level.x[c], y}, level.next[c].row(y));
-}
-
-/// `write(equations, channel, to)` of row y; rows around the image are zero.
-template <class Write>
-void write_rows(const Level& level, int y, RecentRows& to, Write write) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    float* row = to.row(c, y);
-    if (y < 0 || y >= level.a.height)
-      std::fill_n(row, end_of(level.a.width), 0.f);
-    else
-      write(RowEquations(level, c, y), c, row);
-    row[level.a.width] = 0;
-  }
-}
-
-/// The second of two steps downwards, and the first upwards.
-void relax_rows(const Level& level, int y, Band& band) {
-  write_rows(level, y, band.twice, [&](const RowEquations& a, std::size_t c, float* next) {
-    relax(a, second_step, {band.once, c, y}, next);
-  });
-}
-
-void restrict_rows(Level& level, int y, Band& band, Level& coarse) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::copy_n(band.twice.row(c, y), end_of(level.a.width), level.next[c].row(y));
-    float* sums = coarse.b[c].row(y / 2);
-    if (y % 2 == 0) std::fill_n(sums, end_of(level.a.width) / 2, 0.f);
-    find_residual({level, c, y}, {band.twice, c, y}, band.residual.data());
-    add_pairs(band.residual.data(), level.a.width, sums);
-  }
-}
-
-/// Two Jacobi steps into `next`, and the sums of the residual over blocks of 2x2 as the coarser grid's b.
-/// `from_zero`: from zero, else from x. Each sweep follows the one before it at a distance of one row, so
-/// that memory is read once.
-CASTRAY_VECTOR_CLONES
-void sweep_down(Level& level, bool from_zero, Band& band, Level& coarse) {
-  for (int y = band.begin - 2; y < band.end + 2; ++y) {
-    write_rows(level, y, band.once, [&](const RowEquations& a, std::size_t c, float* next) {
-      if (from_zero)
-        start(a, next);
-      else
-        relax(a, first_step, {level.x[c], y}, next);
-    });
-    if (y >= band.begin) relax_rows(level, y - 1, band);
-    if (y >= band.begin + 2) restrict_rows(level, y - 2, band, coarse);
-  }
-}
-
-/// Corrections of coarser grids, added to x, and two Jacobi steps. `further`: how far `next` goes in the
-/// direction of the result, from where it is or from zero.
-CASTRAY_VECTOR_CLONES
-void sweep_up(Level& level, float further, bool from_zero, Band& band, const Level& coarse) {
-  for (int y = band.begin - 2; y < band.end + 2; ++y) {
-    write_rows(level, y, band.once, [&](const RowEquations&, std::size_t c, float* next) {
-      add_coarse(level.x[c].row(y), coarse.x[c].row(y / 2), level.a.width, next);
-    });
-    if (y >= band.begin) relax_rows(level, y - 1, band);
-    for (std::size_t c = 0; y >= band.begin + 2 && c < 3; ++c)
-      go_further({level, c, y - 2}, {band.twice, c, y - 2}, further, from_zero, level.next[c].row(y - 2));
-  }
-}
-
 }  // namespace
 
 class ScreenedPoisson::Multigrid {
@@ -246,14 +367,20 @@ class ScreenedPoisson::Multigrid {
 
   Level& finest() { return levels_[0]; }
 
-  PixelPlanes solve() {
+  /// x, which the last solution may have taken with it.
+  PixelPlanes& find_room() {
     for (PixelPlane& x : finest().x)
       if (x.values.empty()) x = PixelPlane(finest().a.width, finest().a.height);
+    return finest().x;
+  }
+
+  PixelPlanes solve() {
+    find_room();
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       if (i > 0) couple(levels_[i - 1].a, levels_[i].a);
       invert_diagonal(levels_[i]);
     }
-    cycles(0, cycle_steps);
+    cycles(0);
     return std::move(finest().x);
   }
 
@@ -286,43 +413,42 @@ class ScreenedPoisson::Multigrid {
     for (int y = 0; y < coarse.height; ++y) couple_coarse(fine, y, coarse);
   }
 
+  std::span<const float> steps_of(std::size_t i) const {
+    if (i == 0) return cycle_steps;
+    if (i == 1) return coarse_steps;
+    return one_step;
+  }
+
   /// Cycles on level i and coarser ones, from zero.
-  void cycles(std::size_t i, std::span<const float> steps) {
+  void cycles(std::size_t i) {
+    if (i + 1 == levels_.size()) return solve_coarsest();
+    Level &level = levels_[i], &coarse = levels_[i + 1];
+    const std::span<const float> steps = steps_of(i);
+    for_bands(level, [&](Band& band) { keep_outside(level, band); });
+    for_bands(level, [&](Band& band) { sweep_down(level, band, coarse); });
     for (std::size_t k = 0; k < steps.size(); ++k) {
-      go_down(i, k == 0);
-      go_up(i, steps[k], k == 0);
+      const bool first = k == 0, last = k + 1 == steps.size();
+      cycles(i + 1);
+      for_bands(level, [&](Band& band) { keep_outside(level, band); });
+      for_bands(level, [&](Band& band) { sweep_up(level, band, steps[k], first, last, coarse); });
     }
   }
-  std::span<const float> steps_of(const Level& coarse) const {
-    if (std::max(coarse.a.width, coarse.a.height) < worth_two_cycles) return one_step;
-    return coarse_steps;
-  }
 
-  /// The first half of a cycle, with the cycles of coarser grids. `next` is then x before the cycle.
-  void go_down(std::size_t i, bool from_zero) {
-    Level &level = levels_[i], &coarse = levels_[i + 1];
-    for_bands(level, [&](Band& band) { sweep_down(level, from_zero, band, coarse); });
-    std::swap(level.x, level.next);
-    if (i + 2 < levels_.size())
-      cycles(i + 1, steps_of(coarse));
-    else
-      solve_coarsest();
-  }
-
-  void go_up(std::size_t i, float further, bool from_zero) {
-    Level &level = levels_[i], &coarse = levels_[i + 1];
-    for_bands(level, [&](Band& band) { sweep_up(level, further, from_zero, band, coarse); });
-    std::swap(level.x, level.next);
-  }
-
+  /// By Gauss-Seidel steps, of which a few are enough for so few pixels.
   void solve_coarsest() {
     Level& level = levels_.back();
-    for (PixelPlane& x : level.x) std::fill(x.values.begin(), x.values.end(), 0.f);
-    for (int sweep = 0; sweep <= coarsest_sweeps; ++sweep)
-      for (const float step : {first_step, second_step}) {
-        step_all(level, step);
-        std::swap(level.x, level.next);
-      }
+    const PixelCouplings& a = level.a;
+    for (std::size_t c = 0; c < 3; ++c) {
+      PixelPlane& x = level.x[c];
+      std::fill(x.values.begin(), x.values.end(), 0.f);
+      for (int step = 0; step < coarsest_steps; ++step)
+        for (int y = 0; y < a.height; ++y)
+          for (int i = 0; i < a.width; ++i)
+            x.row(y)[i] = level.inverse_diagonal.row(y)[i] *
+                          (level.b[c].row(y)[i] +
+                           (a.right.row(y)[i] * x.row(y)[i + 1] + a.right.row(y)[i - 1] * x.row(y)[i - 1]) +
+                           (a.below.row(y)[i] * x.row(y + 1)[i] + a.below.row(y - 1)[i] * x.row(y - 1)[i]));
+    }
   }
 
   int threads_;
@@ -337,13 +463,12 @@ ScreenedPoisson::ScreenedPoisson(int width, int height, int threads)
 ScreenedPoisson::~ScreenedPoisson() = default;
 PixelCouplings& ScreenedPoisson::couplings() { return multigrid_->finest().a; }
 PixelPlanes& ScreenedPoisson::b() { return multigrid_->finest().b; }
-PixelPlanes& ScreenedPoisson::scratch() { return multigrid_->finest().next; }
+PixelPlanes& ScreenedPoisson::scratch() { return multigrid_->find_room(); }
 PixelPlanes ScreenedPoisson::solve() { return multigrid_->solve(); }
 
 std::uint64_t bytes_to_solve(int width, int height, int threads) {
-  constexpr std::uint64_t planes_of_level =
-      3 + 1 + 3 * 3;  // couplings, their inverse diagonal, b, x and next
-  constexpr int rows_of_a_band = 2 * 3 * RecentRows::kept + 1;  // relaxed once and twice, and the residual
+  constexpr std::uint64_t planes_of_level = 3 + 1 + 2 * 3;  // couplings, their inverse diagonal, b and x
+  constexpr int steps = 6, rows_of_a_band = 3 * (steps * RecentRows::kept + 2 * rows_outside + 1);
   std::uint64_t bytes = static_cast<std::uint64_t>(threads) * PixelPlane::bytes_of(width, rows_of_a_band);
   for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
     bytes += planes_of_level * PixelPlane::bytes_of(w, h);

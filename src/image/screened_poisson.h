@@ -56,7 +56,7 @@ class ScreenedPoisson {
   ScreenedPoisson(const ScreenedPoisson&) = delete;
   ScreenedPoisson& operator=(const ScreenedPoisson&) = delete;
 
-  /// To be filled in before `solve`, which leaves them as they are.
+  /// To be filled in before `solve`, which leaves the couplings as they are, and uses up b.
   PixelCouplings& couplings();
   PixelPlanes& b();
   /// Memory that `solve` will need, for other uses before; its border must stay zero.
