@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <span>
 #include <utility>
 #include <vector>
@@ -21,13 +22,24 @@ constexpr float first_step = 0.5617f, second_step = 1.389f;
 constexpr int worth_threads = 1 << 16;  ///< pixels
 constexpr int coarsest_side = 2, coarsest_steps = 8;
 
+/// How many rows of b beyond its own a thread needs for the last cycle of a grid; and more for each before
+/// it.
+constexpr int rows_of_last_cycle = 3, rows_of_a_cycle = 4;
+constexpr int rows_outside =
+    rows_of_last_cycle + rows_of_a_cycle * (static_cast<int>(std::size(cycle_steps)) - 1);
+
+int threads_for(int width, int height, int threads) { return width * height >= worth_threads ? threads : 1; }
+
 /// One grid of the hierarchy. Each coarser one has a pixel for every 2x2 (Brandt 1977).
 struct Level {
   PixelCouplings a;
   PixelPlane inverse_diagonal;
-  PixelPlanes b, x;  ///< what is left of b when x is taken out of it, and x
+  PixelPlanes b, x;                 ///< what is left of b when x is taken out of it, and x
+  std::vector<PixelPlane> outside;  ///< b of the rows around each thread's, as others change theirs
 
-  explicit Level(PixelCouplings couplings) : a(std::move(couplings)), inverse_diagonal(a.width, a.height) {
+  Level(PixelCouplings couplings, int threads)
+      : a(std::move(couplings)), inverse_diagonal(a.width, a.height) {
+    for (int i = 0; i < threads; ++i) outside.emplace_back(a.width, 2 * 3 * rows_outside);
     for (PixelPlanes* planes : {&b, &x})
       for (PixelPlane& plane : *planes) plane = PixelPlane(a.width, a.height);
   }
@@ -65,16 +77,13 @@ class RecentRows {
   PixelPlane plane_;
 };
 
-/// How many rows beyond those that a thread writes it needs of b.
-constexpr int rows_outside = 6;
-
 /// What a thread that works on the rows begin <= y < end has of its own.
 struct Band {
   int begin = 0, end = 0;
   RecentRows started, relaxed, improved, correction;  ///< of a cycle
   RecentRows restarted, prepared;                     ///< of the next one, before its coarser grids
-  PixelPlane outside;   ///< b of the rows around these, as other threads may change it
-  PixelPlane residual;  ///< of three channels
+  PixelPlane residual;                                ///< of three channels
+  PixelPlane* outside = nullptr;                      ///< that of the grid
 
   explicit Band(int width)
       : started(width),
@@ -83,13 +92,13 @@ struct Band {
         correction(width),
         restarted(width),
         prepared(width),
-        outside(width, 2 * 3 * rows_outside),
         residual(width, 3) {}
 
+  bool has(int y) const { return y >= begin && y < end; }
   float* b(Level& level, int c, int y) {
-    if (y >= begin && y < end) return level.b[static_cast<std::size_t>(c)].row(y);
-    const int row = y < begin ? y - begin + rows_outside : y - end + rows_outside;
-    return outside.row((c * 2 + (y < begin ? 0 : 1)) * rows_outside + (y < begin ? row : row - rows_outside));
+    if (has(y)) return level.b[static_cast<std::size_t>(c)].row(y);
+    const int row = rows_outside + y - (y < begin ? begin : end);
+    return outside->row(c * 2 * rows_outside + row);
   }
 };
 
@@ -281,21 +290,32 @@ void prepare(const Place& place, int number, Level& level, Band& band, Level& co
   place.step(number, level, &band.restarted, [&](int y) { start_row(level, y, band, band.restarted); });
   place.step(number + 1, level, &band.prepared,
              [&](int y) { relax_row(level, y, band, second_step, band.restarted, band.prepared); });
-  place.step(number + 2, level, nullptr, [&](int y) { restrict_row(level, y, band, coarse); });
+  place.step(number + 2, level, nullptr, [&](int y) {
+    if (band.has(y)) restrict_row(level, y, band, coarse);
+  });
+}
+
+/// The rows of b around a band, which other threads will change. This one changes its own of them likewise.
+void keep_outside(Level& level, Band& band) {
+  for (int k = 0; k < rows_outside; ++k)
+    for (const int y : {band.begin - rows_outside + k, band.end + k})
+      for (int c = 0; c < 3 && y >= 0 && y < level.a.height; ++c)
+        std::copy_n(level.b[static_cast<std::size_t>(c)].row(y), end_of(level.a.width), band.b(level, c, y));
 }
 
 CASTRAY_VECTOR_CLONES
 void sweep_down(Level& level, Band& band, Level& coarse) {
+  keep_outside(level, band);
   for (int row = band.begin - 2; row < band.end + 2; ++row)
     prepare({band.begin - 2, row}, 0, level, band, coarse);
 }
 
 /// The second half of a cycle: corrections of coarser grids, and two Jacobi steps. `further`: how far x goes
 /// in the direction of the result; it is taken out of b. With it goes the first half of the next cycle, if
-/// there is one.
+/// `more` are to come.
 CASTRAY_VECTOR_CLONES
-void sweep_up(Level& level, Band& band, float further, bool first, bool last, Level& coarse) {
-  const int outside = last ? 3 : rows_outside;
+void sweep_up(Level& level, Band& band, float further, bool from_zero, int more, Level& coarse) {
+  const int outside = rows_of_last_cycle + more * rows_of_a_cycle;
   for (int row = band.begin - outside; row < band.end + outside; ++row) {
     const Place place{band.begin - outside, row};
     place.step(0, level, &band.started, [&](int y) { start_row(level, y, band, band.started); });
@@ -305,21 +325,12 @@ void sweep_up(Level& level, Band& band, float further, bool first, bool last, Le
                [&](int y) { relax_row(level, y, band, second_step, band.relaxed, band.improved); });
     place.step(3, level, &band.correction, [&](int y) {
       relax_row(level, y, band, first_step, band.improved, band.correction);
-      if (y >= band.begin && y < band.end) go_further(level, y, band, further, first);
+      if (band.has(y)) go_further(level, y, band, further, from_zero);
     });
-    if (last) continue;
+    if (more == 0) continue;
     place.step(4, level, nullptr, [&](int y) { take_out(level, y, band, further); });
     prepare(place, 4, level, band, coarse);
   }
-}
-
-/// What `sweep_up` needs of b while other threads change it.
-void keep_outside(Level& level, Band& band) {
-  for (std::size_t c = 0; c < 3; ++c)
-    for (int k = 0; k < rows_outside; ++k)
-      for (const int y : {band.begin - rows_outside + k, band.end + k})
-        if (y >= 0 && y < level.a.height)
-          std::copy_n(level.b[c].row(y), end_of(level.a.width), band.b(level, static_cast<int>(c), y));
 }
 
 CASTRAY_VECTOR_CLONES
@@ -357,11 +368,10 @@ void couple_coarse(const PixelCouplings& fine, int y, PixelCouplings& coarse) {
 class ScreenedPoisson::Multigrid {
  public:
   Multigrid(int width, int height, int threads) : threads_(threads) {
-    levels_.emplace_back(PixelCouplings(width, height));
-    do {
-      const PixelCouplings& fine = levels_.back().a;
-      levels_.emplace_back(PixelCouplings((fine.width + 1) / 2, (fine.height + 1) / 2));
-    } while (std::max(levels_.back().a.width, levels_.back().a.height) > coarsest_side);
+    for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
+      levels_.emplace_back(PixelCouplings(w, h), threads_for(w, h, threads));
+      if (std::max(w, h) <= coarsest_side) break;
+    }
     for (int i = 0; i < threads; ++i) bands_.emplace_back(width);
   }
 
@@ -385,18 +395,18 @@ class ScreenedPoisson::Multigrid {
   }
 
  private:
-  int threads_for(int width, int height) const { return width * height >= worth_threads ? threads_ : 1; }
-
   /// `work(band)`, with bands that cover the rows; all begin with an even one.
   template <class Work>
-  void for_bands(const Level& level, Work work) {
-    const int bands = threads_for(level.a.width, level.a.height), pairs = (level.a.height + 1) / 2;
+  void for_bands(Level& level, Work work) {
+    const int bands = threads_for(level.a.width, level.a.height, threads_), pairs = (level.a.height + 1) / 2;
     const auto begin_of = [&](int k) {
       return 2 * static_cast<int>(static_cast<std::int64_t>(pairs) * k / bands);
     };
 #pragma omp parallel for schedule(static, 1) num_threads(bands)
     for (int k = 0; k < bands; ++k) {
-      Band& band = bands_[static_cast<std::size_t>(k)];
+      const auto at = static_cast<std::size_t>(k);
+      Band& band = bands_[at];
+      band.outside = &level.outside[at];
       band.begin = begin_of(k);
       band.end = std::min(begin_of(k + 1), level.a.height);
       work(band);
@@ -404,12 +414,12 @@ class ScreenedPoisson::Multigrid {
   }
 
   void invert_diagonal(Level& level) const {
-#pragma omp parallel for schedule(static) num_threads(threads_for(level.a.width, level.a.height))
+#pragma omp parallel for schedule(static) num_threads(threads_for(level.a.width, level.a.height, threads_))
     for (int y = 0; y < level.a.height; ++y) invert(level.a, y, level.inverse_diagonal.row(y));
   }
 
   void couple(const PixelCouplings& fine, PixelCouplings& coarse) const {
-#pragma omp parallel for schedule(static) num_threads(threads_for(fine.width, fine.height))
+#pragma omp parallel for schedule(static) num_threads(threads_for(fine.width, fine.height, threads_))
     for (int y = 0; y < coarse.height; ++y) couple_coarse(fine, y, coarse);
   }
 
@@ -424,13 +434,11 @@ class ScreenedPoisson::Multigrid {
     if (i + 1 == levels_.size()) return solve_coarsest();
     Level &level = levels_[i], &coarse = levels_[i + 1];
     const std::span<const float> steps = steps_of(i);
-    for_bands(level, [&](Band& band) { keep_outside(level, band); });
     for_bands(level, [&](Band& band) { sweep_down(level, band, coarse); });
     for (std::size_t k = 0; k < steps.size(); ++k) {
-      const bool first = k == 0, last = k + 1 == steps.size();
+      const int more = static_cast<int>(steps.size() - k) - 1;
       cycles(i + 1);
-      for_bands(level, [&](Band& band) { keep_outside(level, band); });
-      for_bands(level, [&](Band& band) { sweep_up(level, band, steps[k], first, last, coarse); });
+      for_bands(level, [&](Band& band) { sweep_up(level, band, steps[k], k == 0, more, coarse); });
     }
   }
 
@@ -468,10 +476,12 @@ PixelPlanes ScreenedPoisson::solve() { return multigrid_->solve(); }
 
 std::uint64_t bytes_to_solve(int width, int height, int threads) {
   constexpr std::uint64_t planes_of_level = 3 + 1 + 2 * 3;  // couplings, their inverse diagonal, b and x
-  constexpr int steps = 6, rows_of_a_band = 3 * (steps * RecentRows::kept + 2 * rows_outside + 1);
+  constexpr int steps = 6, rows_of_a_band = 3 * (steps * RecentRows::kept + 1);
   std::uint64_t bytes = static_cast<std::uint64_t>(threads) * PixelPlane::bytes_of(width, rows_of_a_band);
   for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
-    bytes += planes_of_level * PixelPlane::bytes_of(w, h);
+    bytes += planes_of_level * PixelPlane::bytes_of(w, h) +
+             static_cast<std::uint64_t>(threads_for(w, h, threads)) *
+                 PixelPlane::bytes_of(w, 2 * 3 * rows_outside);
     if (std::max(w, h) <= coarsest_side) return bytes;
   }
 }
