@@ -80,26 +80,6 @@ std::string csv_field(const std::string& text) {
 
 }  // namespace
 
-bool BenchScene::needs_better_references() const {
-  constexpr double enough = 0.2;
-  for (const BenchCurve& curve : curves)
-    for (const BenchPoint& point : curve.points)
-      if (point.relmse < enough * reference_noise) return true;
-  return false;
-}
-
-std::string kind_name(ContenderKind kind) {
-  switch (kind) {
-    case ContenderKind::configuration:
-      return "configuration";
-    case ContenderKind::ablation:
-      return "ablation";
-    case ContenderKind::peer:
-      return "peer";
-  }
-  return "";
-}
-
 std::string bench_table(const BenchReport& report) {
   std::string text = fmt::format("castray {}, {} threads, {}; medians of {} seeds\n", report.version,
                                  report.threads, report.machine, report.seeds);
