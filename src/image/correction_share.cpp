@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "castray/vec.h"
+#include "core/vector_clones.h"
 #include "image/row_means.h"
 
 namespace castray {
@@ -23,57 +24,75 @@ struct Moments {
   double with_error = 0, squares = 0;
 };
 
-/// What the two halves say of a pixel's radiance.
-struct Halves {
-  const RowMeans& first;
-  const RowMeans& second;
+/// Sums over the columns of a row of blocks.
+struct ColumnSums {
+  std::vector<float> luminances[2], pixels[2];  ///< of the halves
+  std::vector<float> with_error, squares;
 
-  bool both_know(std::size_t x) const { return first.per_sum[x] > 0 && second.per_sum[x] > 0; }
-};
+  explicit ColumnSums(std::size_t width) : with_error(width), squares(width) {
+    for (std::size_t half = 0; half < 2; ++half) luminances[half] = pixels[half] = with_error;
+  }
 
-void add_corrections(const Halves& means, const PixelPlanes (&corrections)[2], int y,
-                     std::vector<Moments>& blocks) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    const float *first = corrections[0][c].row(y), *second = corrections[1][c].row(y);
-    for (std::size_t x = 0; x < means.first.per_sum.size(); ++x) {
-      if (!means.both_know(x)) continue;
-      const double one = double{first[x]}, other = double{second[x]};
-      Moments& block_of_x = blocks[x / block];
-      block_of_x.with_error += (means.first.channel[c][x] - means.second.channel[c][x]) * (one - other);
-      block_of_x.squares += one * one + other * other;
+  CASTRAY_VECTOR_CLONES
+  void add_means(std::size_t half, const RowMeans& means) {
+    const double *red = means.channel[0].data(), *green = means.channel[1].data(),
+                 *blue = means.channel[2].data(), *known = means.per_sum.data();
+    float* __restrict sum = luminances[half].data(), * __restrict number = pixels[half].data();
+    for (std::size_t x = 0; x < means.per_sum.size(); ++x) {
+      sum[x] += static_cast<float>(luminance(Vec3d(red[x], green[x], blue[x])));
+      number[x] += known[x] > 0 ? 1.f : 0.f;
     }
   }
-}
+
+  /// Of pixels that both halves know.
+  CASTRAY_VECTOR_CLONES
+  void add_corrections(const RowMeans& first, const RowMeans& second, std::size_t channel,
+                       const float* correction, const float* other) {
+    const double *mean = first.channel[channel].data(), *other_mean = second.channel[channel].data(),
+                 *known = first.per_sum.data(), *other_known = second.per_sum.data();
+    float* __restrict products = with_error.data(), * __restrict sum = squares.data();
+    for (std::size_t x = 0; x < first.per_sum.size(); ++x) {
+      const float both = (known[x] > 0) & (other_known[x] > 0) ? 1.f : 0.f;
+      products[x] += both * (static_cast<float>(mean[x] - other_mean[x]) * (correction[x] - other[x]));
+      sum[x] += both * (correction[x] * correction[x] + other[x] * other[x]);
+    }
+  }
+};
 
 /// Of the blocks whose first row is y0. The film is read once: it takes longer than all else here.
-std::vector<Moments> moments_of_blocks(const DifferenceSums& sums, const PixelPlanes (&corrections)[2],
-                                       int y0) {
-  const int width = sums.width();
-  std::vector<Moments> blocks((static_cast<std::size_t>(width) + block - 1) / block);
-  std::vector<double> luminances[2], pixels[2];
-  RowMeans means[2] = {RowMeans(width), RowMeans(width)};
-  for (std::size_t half = 0; half < 2; ++half)
-    luminances[half] = pixels[half] = std::vector<double>(blocks.size());
+std::vector<Moments> moments_of_blocks(const DifferenceSums& sums,
+                                       const std::array<PixelPlanes, 2>& corrections, int y0) {
+  const auto width = static_cast<std::size_t>(sums.width());
+  ColumnSums columns(width);
+  RowMeans means[2] = {RowMeans(sums.width()), RowMeans(sums.width())};
   for (int y = y0; y < std::min(y0 + block, sums.height()); ++y) {
     for (std::size_t half = 0; half < 2; ++half) {
       means[half].read(sums, static_cast<int>(half), y, DifferenceSums::own);
-      const auto& [red, green, blue] = means[half].channel;
-      for (std::size_t x = 0; x < red.size(); ++x) {
-        luminances[half][x / block] += luminance(Vec3d{red[x], green[x], blue[x]});
-        pixels[half][x / block] += means[half].per_sum[x] > 0;
-      }
+      columns.add_means(half, means[half]);
     }
-    add_corrections({means[0], means[1]}, corrections, y, blocks);
+    for (std::size_t c = 0; c < 3; ++c)
+      columns.add_corrections(means[0], means[1], c, corrections[0][c].row(y), corrections[1][c].row(y));
   }
-  for (std::size_t i = 0; i < blocks.size(); ++i)
-    blocks[i].brightness =
-        luminances[0][i] / std::max(pixels[0][i], 1.0) * luminances[1][i] / std::max(pixels[1][i], 1.0);
+  constexpr std::size_t side = block;
+  std::vector<Moments> blocks((width + side - 1) / side);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto total = [&](const std::vector<float>& column) {
+      double sum = 0;
+      for (std::size_t x = i * side; x < std::min((i + 1) * side, width); ++x) sum += double{column[x]};
+      return sum;
+    };
+    const auto mean = [&](std::size_t half) {
+      return total(columns.luminances[half]) / std::max(total(columns.pixels[half]), 1.0);
+    };
+    blocks[i] = {mean(0) * mean(1), total(columns.with_error), total(columns.squares)};
+  }
   return blocks;
 }
 
 }  // namespace
 
-double share_of_corrections(const DifferenceSums& sums, const PixelPlanes (&corrections)[2], int threads) {
+double share_of_corrections(const DifferenceSums& sums, const std::array<PixelPlanes, 2>& corrections,
+                            int threads) {
   const int rows = (sums.height() + block - 1) / block;
   std::vector<std::vector<Moments>> blocks(static_cast<std::size_t>(rows));
 #pragma omp parallel for schedule(static) num_threads(threads)

@@ -8,8 +8,7 @@
 #include "core/threads.h"
 #include "core/vector_clones.h"
 #include "image/correction_share.h"
-#include "image/pair_weights.h"
-#include "image/row_means.h"
+#include "image/half_strip.h"
 
 namespace castray {
 
@@ -17,84 +16,98 @@ namespace {
 
 using Term = DifferenceSums::Term;
 
-constexpr int rows_of_a_strip = 32;
-
-/// The right side of the equations for corrections: what differences say of neighbours, less what means say.
+/// The right side of the equations for corrections: how differences and means contradict each other, weighed.
 class RightSide {
  public:
-  RightSide(const DifferenceSums& sums, int half, const PixelCouplings& weights)
-      : sums_(sums),
-        half_(half),
-        weights_(weights),
-        here_(sums.width()),
-        next_(sums.width()),
-        difference_(sums.width()) {
-    for (Pulls* pulls : {&right_, &above_, &below_})
-      for (auto& channel : *pulls) channel.resize(static_cast<std::size_t>(sums.width()) + 1);
+  explicit RightSide(int width) : width_(width) {
+    for (Rows* rows : {&right_, &above_, &below_})
+      for (auto& channel : *rows) channel.resize(static_cast<std::size_t>(width) + 1);
   }
 
-  /// Rows begin <= y < end of `b`.
-  void write(int begin, int end, PixelPlanes& b) {
-    const int first = std::max(begin - 1, 0);
-    next_.read(sums_, half_, first, Term::own);
-    for (int y = first; y < end; ++y) {
-      std::swap(here_, next_);
+  /// The rows of a strip. `handed_on`: what the row below it gets besides.
+  void write(const HalfStrip& strip, PixelEquations& equations, PixelPlanes& handed_on) {
+    for (auto& channel : below_) std::fill(channel.begin(), channel.end(), 0.f);
+    for (int y = strip.begin(); y < strip.end(); ++y) {
       std::swap(above_, below_);
-      const bool any_below = y + 1 < sums_.height();
-      if (any_below) next_.read(sums_, half_, y + 1, Term::own);
-      if (any_below) difference_.read(sums_, half_, y, Term::below);
-      for (std::size_t c = 0; c < 3; ++c)
-        if (any_below)
-          find_pulls(weights_.below.row(y), c, here_.channel[c].data(), next_.channel[c].data(),
-                     sums_.width(), below_[c].data());
-        else
-          std::fill(below_[c].begin(), below_[c].end(), 0.f);
-      if (y < begin) continue;
-      difference_.read(sums_, half_, y, Term::right);
       for (std::size_t c = 0; c < 3; ++c) {
-        const float* mean = here_.channel[c].data();
-        find_pulls(weights_.right.row(y), c, mean, mean + 1, sums_.width() - 1, right_[c].data() + 1);
-        add_up(c, b[c].row(y));
+        weigh(strip.right_contradiction(c, y), equations.a.right.row(y), width_ - 1, right_[c].data() + 1);
+        weigh(strip.below_contradiction(c, y), equations.a.below.row(y), width_, below_[c].data());
+        add_up(c, equations.b[c].row(y));
       }
     }
+    for (std::size_t c = 0; c < 3; ++c)
+      std::copy_n(below_[c].data(), width_, handed_on[c].row(strip.begin() / HalfStrip::rows));
   }
 
  private:
-  using Pulls = std::array<std::vector<float>, 3>;
+  using Rows = std::array<std::vector<float>, 3>;
 
   CASTRAY_VECTOR_CLONES
-  void find_pulls(const float* weight, std::size_t c, const float* mean, const float* neighbour, int count,
-                  float* __restrict pull) const {
-    const float* difference = difference_.channel[c].data();
-    for (int x = 0; x < count; ++x) pull[x] = weight[x] * (difference[x] - (neighbour[x] - mean[x]));
+  static void weigh(const float* contradiction, const float* weight, int count, float* __restrict pull) {
+    for (int x = 0; x < count; ++x) pull[x] = weight[x] > 0 ? weight[x] * contradiction[x] : 0;
   }
 
   CASTRAY_VECTOR_CLONES
   void add_up(std::size_t c, float* __restrict sum) const {
     const float *above = above_[c].data(), *below = below_[c].data(), *left = right_[c].data(),
                 *right = left + 1;
-    for (int x = 0; x < sums_.width(); ++x) sum[x] = above[x] + left[x] - right[x] - below[x];
+    for (int x = 0; x < width_; ++x) sum[x] = above[x] + left[x] - right[x] - below[x];
   }
 
-  const DifferenceSums& sums_;
-  int half_;
-  const PixelCouplings& weights_;
-  RowMeans here_, next_, difference_;
-  Pulls right_;          ///< between a pixel and the one to its left; zero at both ends
-  Pulls above_, below_;  ///< between a pixel and those of the rows around
+  int width_;
+  Rows right_;          ///< between a pixel and the one to its left; zero at both ends
+  Rows above_, below_;  ///< between a pixel and those of the rows around
 };
 
-/// Takes out the pairs, and the pixels, of which this half has no samples.
-void keep_known(PixelCouplings& weights, const DifferenceSums& sums, int half, int threads) {
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < sums.height(); ++y) {
-    const auto keep = [&](Term term, float* weight) {
-      const std::uint32_t* count = sums.counts(half, y, term);
-      for (int x = 0; x < sums.width(); ++x) weight[x] = count[x] > 0 ? weight[x] : 0;
-    };
-    keep(Term::own, weights.screen.row(y));
-    keep(Term::right, weights.right.row(y));
-    keep(Term::below, weights.below.row(y));
+using BothEquations = std::array<PixelEquations, 2>;
+
+/// The film is read once for all.
+BothEquations equations_of(const DifferenceSums& sums, int threads, WeightsOf weights_of) {
+  const int w = sums.width(), h = sums.height(), strips = (h + HalfStrip::rows - 1) / HalfStrip::rows;
+  BothEquations equations = {PixelEquations(w, h), PixelEquations(w, h)};
+  std::array<PixelPlanes, 2> handed_on;
+  for (PixelPlanes& planes : handed_on)
+    for (PixelPlane& plane : planes) plane = PixelPlane(w, strips);
+#pragma omp parallel num_threads(threads)
+  {
+    HalfStrip halves[] = {HalfStrip(sums, 0), HalfStrip(sums, 1)};
+    RightSide right_side(w);
+#pragma omp for schedule(static)
+    for (int strip = 0; strip < strips; ++strip) {
+      for (int half = 0; half < 2; ++half) {
+        const int used_by = weights_of == WeightsOf::other_half ? 1 - half : half;
+        halves[half].read(strip * HalfStrip::rows);
+        halves[half].find_weights(used_by, equations[static_cast<std::size_t>(used_by)].a);
+      }
+      for (std::size_t half = 0; half < 2; ++half)
+        right_side.write(halves[half], equations[half], handed_on[half]);
+    }
+#pragma omp for schedule(static)
+    for (int strip = 1; strip < strips; ++strip)
+      for (std::size_t half = 0; half < 2; ++half)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float* from = handed_on[half][c].row(strip - 1);
+          float* b = equations[half].b[c].row(strip * HalfStrip::rows);
+          for (int x = 0; x < w; ++x) b[x] += from[x];
+        }
+  }
+  return equations;
+}
+
+/// Adds a share of the corrections to the means of row y.
+CASTRAY_VECTOR_CLONES
+void add_row(const Film& film, const std::array<PixelPlanes, 2>& corrections, float share, int y,
+             Image& image) {
+  const Window& window = film.window();
+  for (std::size_t half = 0; half < 2; ++half) {
+    const std::uint32_t* count = film.differences().counts(static_cast<int>(half), y, Term::own);
+    const float *red = corrections[half][0].row(y), *green = corrections[half][1].row(y),
+                *blue = corrections[half][2].row(y);
+    for (int x = 0; x < film.width(); ++x) {
+      const float all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
+      const float part = share * static_cast<float>(count[x]) / (all > 0 ? all : 1);  // of none there is none
+      image.at(x, y) += Vec3f(red[x], green[x], blue[x]) * part;
+    }
   }
 }
 
@@ -106,16 +119,11 @@ bool may_need_corrections(const DifferenceSums& sums) {
 
 }  // namespace
 
-PixelPlanes corrections(const DifferenceSums& sums, int half, int half_of_weights, int threads,
-                        ScreenedPoisson& solver) {
-  const int h = sums.height();
-  PixelCouplings& weights = solver.couplings();
-  find_weights(sums, half_of_weights, threads, solver.scratch(), weights);
-  keep_known(weights, sums, half, threads);
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < h; y += rows_of_a_strip)
-    RightSide(sums, half, weights).write(y, std::min(y + rows_of_a_strip, h), solver.b());
-  return solver.solve();
+std::array<PixelPlanes, 2> corrections(const DifferenceSums& sums, int threads, WeightsOf weights) {
+  BothEquations equations = equations_of(sums, threads, weights);
+  ScreenedPoisson solver(sums.width(), sums.height(), threads);
+  PixelPlanes first = solver.solve(std::move(equations[0]));
+  return {std::move(first), solver.solve(std::move(equations[1]))};
 }
 
 Image image_of(const Film& film, int threads) {
@@ -123,22 +131,10 @@ Image image_of(const Film& film, int threads) {
   Image image = film.image(threads);
   const DifferenceSums& sums = film.differences();
   if (!sums.kept() || !may_need_corrections(sums)) return image;
-  const Window& window = film.window();
-  ScreenedPoisson solver(film.width(), film.height(), threads);
-  PixelPlanes first = corrections(sums, 0, 1, threads, solver);
-  const PixelPlanes both[] = {std::move(first), corrections(sums, 1, 0, threads, solver)};
+  const std::array<PixelPlanes, 2> both = corrections(sums, threads);
   const auto share = static_cast<float>(share_of_corrections(sums, both, threads) * sums.scale());
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < film.height(); ++y)
-    for (int half = 0; half < DifferenceSums::halves; ++half) {
-      const PixelPlanes& correction = both[half];
-      const std::uint32_t* count = sums.counts(half, y, Term::own);
-      for (int x = 0; x < film.width(); ++x) {
-        const auto all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
-        const Vec3f more(correction[0].row(y)[x], correction[1].row(y)[x], correction[2].row(y)[x]);
-        if (all > 0) image.at(x, y) += more * (share * static_cast<float>(count[x]) / all);
-      }
-    }
+  for (int y = 0; y < film.height(); ++y) add_row(film, both, share, y, image);
   return image;
 }
 
@@ -150,10 +146,13 @@ std::uint64_t bytes_of_image(const Film& like, int width, int height, int thread
   const std::uint64_t writing = pixels * (shown + (like.keeps_replicates() ? noise : 0)) + w * line_buffers;
   std::uint64_t making = 0;
   if (like.differences().kept()) {
-    constexpr std::uint64_t rows_of_a_thread = 9 * sizeof(float) + 3 * (3 + 1) * sizeof(double);
-    making = 3 * PixelPlane::bytes_of(width, height) +  // the corrections of the other half
-             bytes_to_solve(width, height, threads) +
-             static_cast<std::uint64_t>(threads) * w * rows_of_a_thread;
+    const int strips = (height + HalfStrip::rows - 1) / HalfStrip::rows;
+    constexpr int planes_of_a_half = 6 * (HalfStrip::rows + 2) + 3 * (HalfStrip::rows + 3),
+                  vectors_of_a_half = 2 * 3 * (3 + 1) + 6 + 4 + 3, rows_of_right_side = 9;
+    making = (3 + 3) * PixelPlane::bytes_of(width, height) +  // the equations of the other half
+             bytes_to_solve(width, height, threads) + 6 * PixelPlane::bytes_of(width, strips) +
+             static_cast<std::uint64_t>(threads) *
+                 PixelPlane::bytes_of(width, 2 * (planes_of_a_half + vectors_of_a_half) + rows_of_right_side);
   }
   return pixels * sizeof(Vec3f) + std::max(making, writing);
 }

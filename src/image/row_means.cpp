@@ -1,5 +1,8 @@
 #include "image/row_means.h"
 
+#include <limits>
+
+#include "castray/vec.h"
 #include "core/vector_clones.h"
 
 namespace castray {
@@ -8,14 +11,25 @@ CASTRAY_VECTOR_CLONES
 void RowMeans::read(const DifferenceSums& sums, int half, int y, DifferenceSums::Term term) {
   const std::size_t width = per_sum.size();
   const std::uint32_t* count = sums.counts(half, y, term);
-  const float unit = DifferenceSums::unit_over_scale;
-  float* __restrict factor = per_sum.data();
-  for (std::size_t x = 0; x < width; ++x) factor[x] = count[x] > 0 ? unit / static_cast<float>(count[x]) : 0;
+  const double unit = DifferenceSums::unit_over_scale;
+  double* __restrict factor = per_sum.data();
+  constexpr double none = std::numeric_limits<double>::infinity();  // a quotient of 0, without a branch
+  for (std::size_t x = 0; x < width; ++x) {
+    const auto number = static_cast<double>(static_cast<std::int32_t>(count[x]));
+    factor[x] = unit / (number > 0 ? number : none);
+  }
   for (int c = 0; c < 3; ++c) {
     const std::int64_t* sum = sums.sums(half, y, term, c);
-    float* __restrict out = channel[c].data();
-    for (std::size_t x = 0; x < width; ++x) out[x] = static_cast<float>(sum[x]) * factor[x];
+    double* __restrict out = channel[c].data();
+    for (std::size_t x = 0; x < width; ++x) out[x] = static_cast<double>(sum[x]) * factor[x];
   }
+}
+
+CASTRAY_VECTOR_CLONES
+void RowMeans::find_luminance(float* __restrict luminances) const {
+  const double *red = channel[0].data(), *green = channel[1].data(), *blue = channel[2].data();
+  for (std::size_t x = 0; x < per_sum.size(); ++x)
+    luminances[x] = static_cast<float>(luminance(Vec3d(red[x], green[x], blue[x])));
 }
 
 }  // namespace castray

@@ -11,14 +11,15 @@ namespace castray {
 /// The means of a row's pixels, or differences, in three channels, over the film's scale: reconstruction
 /// squares them, which in other units might leave the range of floats.
 struct RowMeans {
-  std::vector<float> channel[3];
-  std::vector<float> per_sum;  ///< the unit over the count, 0 without samples
+  std::vector<double> channel[3];
+  std::vector<double> per_sum;  ///< the unit over the count, 0 without samples
 
   explicit RowMeans(int width) : per_sum(static_cast<std::size_t>(width)) {
     for (auto& values : channel) values.resize(static_cast<std::size_t>(width));
   }
 
   void read(const DifferenceSums& sums, int half, int y, DifferenceSums::Term term);
+  void find_luminance(float* luminances) const;
 };
 
 }  // namespace castray

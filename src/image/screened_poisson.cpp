@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -37,11 +38,14 @@ struct Level {
   PixelPlanes b, x;                 ///< what is left of b when x is taken out of it, and x
   std::vector<PixelPlane> outside;  ///< b of the rows around each thread's, as others change theirs
 
-  Level(PixelCouplings couplings, int threads)
-      : a(std::move(couplings)), inverse_diagonal(a.width, a.height) {
-    for (int i = 0; i < threads; ++i) outside.emplace_back(a.width, 2 * 3 * rows_outside);
-    for (PixelPlanes* planes : {&b, &x})
-      for (PixelPlane& plane : *planes) plane = PixelPlane(a.width, a.height);
+  /// `finest`: a and b are still to come.
+  Level(int width, int height, int threads, bool finest) : inverse_diagonal(width, height) {
+    for (PixelPlane& plane : x) plane = PixelPlane(width, height);
+    for (int i = 0; i < threads; ++i) outside.emplace_back(width, 2 * 3 * rows_outside);
+    if (finest) return;
+    PixelEquations equations(width, height);
+    a = std::move(equations.a);
+    b = std::move(equations.b);
   }
 };
 
@@ -337,9 +341,10 @@ CASTRAY_VECTOR_CLONES
 void invert(const PixelCouplings& a, int y, float* __restrict inverse) {
   const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
               *above = a.below.row(y - 1);
+  constexpr float none = std::numeric_limits<float>::infinity();  // a quotient of 0, without a branch
   for (int x = 0; x < end_of(a.width); ++x) {
     const float diagonal = screen[x] + right[x] + right[x - 1] + below[x] + above[x];
-    inverse[x] = diagonal > 0 ? 1 / diagonal : 0;
+    inverse[x] = 1 / (diagonal > 0 ? diagonal : none);
   }
 }
 
@@ -369,29 +374,23 @@ class ScreenedPoisson::Multigrid {
  public:
   Multigrid(int width, int height, int threads) : threads_(threads) {
     for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
-      levels_.emplace_back(PixelCouplings(w, h), threads_for(w, h, threads));
+      levels_.emplace_back(w, h, threads_for(w, h, threads), levels_.empty());
       if (std::max(w, h) <= coarsest_side) break;
     }
     for (int i = 0; i < threads; ++i) bands_.emplace_back(width);
   }
 
-  Level& finest() { return levels_[0]; }
-
-  /// x, which the last solution may have taken with it.
-  PixelPlanes& find_room() {
-    for (PixelPlane& x : finest().x)
-      if (x.values.empty()) x = PixelPlane(finest().a.width, finest().a.height);
-    return finest().x;
-  }
-
-  PixelPlanes solve() {
-    find_room();
+  PixelPlanes solve(PixelEquations equations) {
+    Level& finest = levels_[0];
+    if (finest.x[0].values.empty()) finest.x = std::move(finest.b);  // the last solution has taken x with it
+    finest.a = std::move(equations.a);
+    finest.b = std::move(equations.b);
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       if (i > 0) couple(levels_[i - 1].a, levels_[i].a);
       invert_diagonal(levels_[i]);
     }
     cycles(0);
-    return std::move(finest().x);
+    return std::move(finest.x);
   }
 
  private:
@@ -466,13 +465,16 @@ class ScreenedPoisson::Multigrid {
 
 PixelCouplings::PixelCouplings(int w, int h) : width(w), height(h), screen(w, h), right(w, h), below(w, h) {}
 
+PixelEquations::PixelEquations(int width, int height) : a(width, height) {
+  for (PixelPlane& plane : b) plane = PixelPlane(width, height);
+}
+
 ScreenedPoisson::ScreenedPoisson(int width, int height, int threads)
     : multigrid_(std::make_unique<Multigrid>(width, height, threads)) {}
 ScreenedPoisson::~ScreenedPoisson() = default;
-PixelCouplings& ScreenedPoisson::couplings() { return multigrid_->finest().a; }
-PixelPlanes& ScreenedPoisson::b() { return multigrid_->finest().b; }
-PixelPlanes& ScreenedPoisson::scratch() { return multigrid_->find_room(); }
-PixelPlanes ScreenedPoisson::solve() { return multigrid_->solve(); }
+PixelPlanes ScreenedPoisson::solve(PixelEquations equations) {
+  return multigrid_->solve(std::move(equations));
+}
 
 std::uint64_t bytes_to_solve(int width, int height, int threads) {
   constexpr std::uint64_t planes_of_level = 3 + 1 + 2 * 3;  // couplings, their inverse diagonal, b and x

@@ -46,6 +46,15 @@ struct PixelCouplings {
   PixelCouplings(int width, int height);
 };
 
+/// Of what is solved for: the energy's weights, and b of three channels.
+struct PixelEquations {
+  PixelCouplings a;
+  PixelPlanes b;
+
+  PixelEquations() = default;
+  PixelEquations(int width, int height);
+};
+
 /// Solves for the x at which the energy, minus 2 sum b_p x_p, is least, for three channels b. Approximately,
 /// by a fixed number of multigrid cycles from zero, so that x is a linear function of b and the same for any
 /// number of threads.
@@ -56,20 +65,15 @@ class ScreenedPoisson {
   ScreenedPoisson(const ScreenedPoisson&) = delete;
   ScreenedPoisson& operator=(const ScreenedPoisson&) = delete;
 
-  /// To be filled in before `solve`, which leaves the couplings as they are, and uses up b.
-  PixelCouplings& couplings();
-  PixelPlanes& b();
-  /// Memory that `solve` will need, for other uses before; its border must stay zero.
-  PixelPlanes& scratch();
-
-  PixelPlanes solve();
+  /// Uses the equations up.
+  PixelPlanes solve(PixelEquations equations);
 
  private:
   class Multigrid;
   std::unique_ptr<Multigrid> multigrid_;
 };
 
-/// The memory that this takes.
+/// The memory that this takes, with one of the equations.
 std::uint64_t bytes_to_solve(int width, int height, int threads);
 
 }  // namespace castray

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "castray/film.h"
 #include "castray/render.h"
@@ -76,8 +77,9 @@ float mean_of(const PixelPlane& plane, int width, int height) {
 TEST_CASE("multigrid comes near the solution of the equations, with strong and weak couplings side by side") {
   constexpr int w = 37, h = 29;
   ScreenedPoisson solver(w, h, 3);
-  PixelCouplings& a = solver.couplings();
-  PixelPlanes &b = solver.b(), exact = b;
+  PixelEquations equations(w, h);
+  PixelCouplings& a = equations.a;
+  PixelPlanes &b = equations.b, exact = b;
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       a.screen.row(y)[x] = 1;
@@ -95,9 +97,7 @@ TEST_CASE("multigrid comes near the solution of the equations, with strong and w
                          a.below.row(y)[x] * (e[x] - exact[c].row(y + 1)[x]) +
                          a.below.row(y - 1)[x] * (e[x] - exact[c].row(y - 1)[x]);
       }
-  const PixelPlanes right_side = b, one = solver.solve();
-  b = right_side;
-  const PixelPlanes again = solver.solve();
+  const PixelPlanes one = solver.solve(equations), again = solver.solve(equations);
   double error = 0, size = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     CHECK(one[c].values == again[c].values);
@@ -112,16 +112,16 @@ TEST_CASE("multigrid comes near the solution of the equations, with strong and w
 TEST_CASE("multigrid makes the same of a large image with any number of threads") {
   constexpr int w = 301, h = 227;
   const auto solved = [&](int threads) {
-    ScreenedPoisson solver(w, h, threads);
+    PixelEquations equations(w, h);
     for (int y = 0; y < h; ++y)
       for (int x = 0; x < w; ++x) {
         const auto random = [&](std::uint32_t i) { return uniform(i, std::uint32_t(x), std::uint32_t(y)); };
-        solver.couplings().screen.row(y)[x] = random(0);
-        if (x + 1 < w) solver.couplings().right.row(y)[x] = 100 * random(1);
-        if (y + 1 < h) solver.couplings().below.row(y)[x] = 100 * random(2);
-        for (std::uint32_t c = 0; c < 3; ++c) solver.b()[c].row(y)[x] = random(3 + c);
+        equations.a.screen.row(y)[x] = random(0);
+        if (x + 1 < w) equations.a.right.row(y)[x] = 100 * random(1);
+        if (y + 1 < h) equations.a.below.row(y)[x] = 100 * random(2);
+        for (std::uint32_t c = 0; c < 3; ++c) equations.b[c].row(y)[x] = random(3 + c);
       }
-    return solver.solve();
+    return ScreenedPoisson(w, h, threads).solve(std::move(equations));
   };
   const PixelPlanes one = solved(1), three = solved(3);
   for (std::size_t c = 0; c < 3; ++c) CHECK(one[c].values == three[c].values);
@@ -180,9 +180,8 @@ TEST_CASE("with one sample a half, or where all is black, the image is the mean"
   for (const std::uint32_t samples : {1u, 2u}) {
     const TiledFilm film = noisy_film(2, samples);
     CHECK(image_of(film).pixels == film.image().pixels);
-    ScreenedPoisson solver(film.width(), film.height(), 1);
-    for (int half = 0; half < 2; ++half)
-      for (const PixelPlane& plane : corrections(film.differences(), half, 1 - half, 1, solver))
+    for (const PixelPlanes& correction : corrections(film.differences(), 1))
+      for (const PixelPlane& plane : correction)
         CHECK(std::all_of(plane.values.begin(), plane.values.end(), [](float v) { return v == 0; }));
   }
   TiledFilm black(window);
@@ -215,8 +214,7 @@ TEST_CASE("reconstruction has no bias, which it has with weights of the same sam
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
     const TiledFilm film = noisy_film(100 + seed, 8);
     const Vec3d correction = mean_of(image_of(film)) - mean_of(film.image());
-    ScreenedPoisson solver(film.width(), film.height(), 1);
-    const PixelPlanes same = corrections(film.differences(), 0, 0, 1, solver);
+    const PixelPlanes same = corrections(film.differences(), 1, WeightsOf::same_half)[0];
     for (int c = 0; c < 3; ++c) {
       proper[c].add(correction[c]);
       own[c].add(mean_of(same[static_cast<std::size_t>(c)], film.width(), film.height()));
