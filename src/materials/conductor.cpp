@@ -34,7 +34,7 @@ const MaterialDescriptor& conductor_descriptor() {
                                 optional_in_hash(anisotropy_direction_key()),
                                 multiple_scattering_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
-        return trait_directional | (has_smooth_lobe(m) ? trait_specular : 0u) |
+        return trait_directional | (has_smooth_lobe(m) ? trait_specular | trait_smooth : 0u) |
                (has_narrow_lobe(m) ? trait_focuses : 0u) | (has_stretched_lobe(m) ? trait_stretched : 0u);
       },
       .albedo = [](const SurfaceValues<double>& v) { return v.color(slot_ks); },

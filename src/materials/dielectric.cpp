@@ -40,8 +40,8 @@ const MaterialDescriptor& dielectric_descriptor() {
                                 alpha_key()}),
       .traits = [](const Material& m) -> std::uint32_t {
         const bool smooth = has_smooth_lobe(m) || m.ior == 1 || m.thin;
-        return trait_directional | trait_transmits | (smooth ? trait_specular : trait_focuses) |
-               (m.is_window() ? trait_window : 0u);
+        return trait_directional | trait_transmits |
+               (smooth ? trait_specular | trait_smooth : trait_focuses) | (m.is_window() ? trait_window : 0u);
       },
       .albedo = [](const SurfaceValues<double>&) { return Vec3d(1); }};
   return descriptor;

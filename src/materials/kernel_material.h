@@ -21,6 +21,7 @@ enum MaterialTrait : uint32_t {
   trait_stretched = 512,        ///< its lobes are not round
   trait_scatters_again = 1024,  ///< principled: its metal adds what facets reflect more than once
   trait_window = 2048,          ///< rays pass as if nothing were there, by Coverage
+  trait_smooth = 4096,          ///< all its lobes are perfectly smooth: light samples bring nothing
 };
 
 /// Where a surface's values stand in an array of floats. Vertices carry the first vertex_floats of them, as

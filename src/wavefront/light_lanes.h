@@ -24,6 +24,9 @@ CASTRAY_INLINE void shadow_rays(const Context& c, const Vertices& vertices, uint
   out.count = 0;
   const LightList& lights = c.scene.lights;
   for (int i = 0; i < vertices.count; i += width) {
+    if constexpr (features & feature_materials)
+      if (none(first_lanes(vertices.count - i) & ~has_traits(c.scene, records_of(vertices, i), trait_smooth)))
+        continue;
     const LightPoint point = point_of(i);
     const LightSegment segment = connect_light(point, load(vertices.p, i));
     const Vec wi = segment.towards * segment.inverse_distance;

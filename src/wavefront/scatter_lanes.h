@@ -16,16 +16,18 @@ enum class Transport : uint8_t {
 };
 
 /// Survival probability of paths at `vertex`. Even a fixed one is capped after many vertices, so that
-/// every path ends. Light that is caught in glass for long has the weight of all that is not: paths from
-/// lights, whose caustics are narrow, are capped late.
+/// every path ends. Light that is caught in glass for long has the weight of all that is not, and a cap
+/// would make it brighter the longer it is caught; so it comes late: on paths from lights, whose caustics are
+/// narrow, and where a scattering `focuses`.
 CASTRAY_INLINE Float survival(const KernelOptions& options, uint32_t vertex, uint32_t first_roulette,
-                              Float brightest, Transport transport) {
+                              Float brightest, Mask focuses, Transport transport) {
   constexpr float highest = (float)highest_survival;
-  constexpr uint32_t first_capped_of_light = 256;
   if (options.fixed_roulette)
     return Float(vertex < first_capped_vertex || options.survival < highest ? options.survival : highest);
-  const bool capped = transport == Transport::from_camera || vertex >= first_capped_of_light;
-  return vertex < first_roulette ? Float(1.f) : min(brightest, Float(capped ? highest : 1.f));
+  constexpr uint32_t first_capped_late = 256;
+  if (vertex < first_roulette) return Float(1.f);
+  const Mask late = Mask(vertex < first_capped_late) & (focuses | Mask(transport != Transport::from_camera));
+  return min(brightest, select(late, Float(1.f), Float(highest)));
 }
 
 /// Paths::arrival of the rays that vertices i to i + width - 1 send on with this pdf. `focuses`: by
@@ -58,6 +60,7 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
     const Numbers<4> n = draw<4>(c.options.sobol, sequence, PathBlocks::direction(vertex));
     Vec throughput = load(vertices.throughput, i), o = load(vertices.p, i), wi;
     Float arrival(0.f), eta2(1.f), brightest;
+    Mask focuses(false);
     Numbers<2> choice{{Float(0.f), Float(0.f)}};
     if (roulette || (features & feature_materials))
       choice = draw<2>(c.options.sobol, sequence, PathBlocks::choice(vertex));
@@ -76,7 +79,7 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
                                : sample(shading.bsdf, shading.wo, choice.u[1], n.u[0], n.u[1]);
       wi = to_world(shading.frame, s.wi);
       throughput = throughput * select(shading.consistent(wi, s.wi), s.weight, black());
-      const Mask focuses = s.specular | has_traits(c.scene, records_of(vertices, i), trait_focuses);
+      focuses = s.specular | has_traits(c.scene, records_of(vertices, i), trait_focuses);
       arrival = arrival_for_mis(c, vertices, i, vertex, focuses, s);
       if constexpr (features & feature_detail)
         if (transport != Transport::from_camera)
@@ -94,7 +97,7 @@ CASTRAY_STAGE void scatter(const Context& c, const Vertices& vertices, uint32_t 
     }
     Mask alive = first_lanes(vertices.count - i) & ~(brightest <= Float(0.f));
     if (roulette) {
-      const Float p = survival(c.options, vertex, first_roulette, brightest, transport);
+      const Float p = survival(c.options, vertex, first_roulette, brightest, focuses, transport);
       alive = alive & (choice.u[0] < p);
       throughput = throughput * (Float(1.f) / p);
     }
