@@ -174,11 +174,10 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain) {
 
 void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few, bool by_single_samples) {
   constexpr double enough = 1.5;
-  // A wrong choice of few suffixes costs little. But where caustics by chance are very bright, what is seen
-  // of them by way of glass is most of the error, rarer than a pilot meets, and sharing does not lessen it.
-  constexpr double very_bright = 200;
-  const double least_of_few = plan.gain_of_light_paths >= very_bright ? enough : 1;
-  if (gain_of_sharing < (few && !by_single_samples ? least_of_few : std::min(error, enough)))
+  // A wrong choice of few suffixes costs little, and plain paths have bright samples that are rarer than
+  // pilots meet.
+  const double least = few && !by_single_samples ? 1 / std::min(error, enough) : std::min(error, enough);
+  if (gain_of_sharing < least)
     plan.suffixes = 0;
   else if (few)
     plan.suffixes = plan.few_suffixes;
