@@ -26,8 +26,8 @@ CASTRAY_INLINE GuideCell guide_cell(const EmissionGuideTable& table, const Vec& 
   return {known, select(known, row, Uint(0u)) * (guide_bins + 1)};
 }
 
-/// The pdf of unit vector w, per solid angle.
-CASTRAY_INLINE Float pdf_of(const EmissionGuideTable& table, const GuideCell& cell, const Vec& w) {
+/// The pdf of unit vector w, per solid angle. `row`: the first of the probabilities.
+CASTRAY_INLINE Float pdf_of(const float* cumulative, Uint row, const Vec& w) {
   const Vec size = magnitude(w);
   const Float most = max_component(size);
   const Mask z = size.z >= most, y = ~z & (size.y >= most);
@@ -41,19 +41,18 @@ CASTRAY_INLINE Float pdf_of(const EmissionGuideTable& table, const GuideCell& ce
   const Uint axis = select(z, Uint(2u), select(y, Uint(1u), Uint(0u)));
   const Uint face = axis * 2u + select(major < Float(0.f), Uint(1u), Uint(0u));
   const Uint a = step(choose(w.y, w.z, w.x)), b = step(choose(w.z, w.x, w.y));
-  const Uint bin = cell.row + (face * guide_steps + a) * guide_steps + b;
-  const Float probability = gather(table.cumulative + 1, bin) - gather(table.cumulative, bin);
+  const Uint bin = row + (face * guide_steps + a) * guide_steps + b;
+  const Float probability = gather(cumulative + 1, bin) - gather(cumulative, bin);
   return probability * Float(guide_steps * guide_steps / 4.f) / (most * most * most);
 }
 
-/// A unit vector. `choice` chooses a bin, u and v a place in it.
-CASTRAY_INLINE Vec direction_in(const EmissionGuideTable& table, const GuideCell& cell, Float choice, Float u,
-                                Float v) {
+/// A unit vector, of the same row. `choice` chooses a bin, u and v a place in it.
+CASTRAY_INLINE Vec direction_in(const float* cumulative, Uint row, Float choice, Float u, Float v) {
   Uint bin(0u);
   for (uint32_t step = guide_search; step > 0; step /= 2) {
     const Mask there = bin < Uint(guide_bins - step);
     const Uint next = select(there, bin + step, Uint(0u));
-    const Mask beyond = there & (gather(table.cumulative, cell.row + next) <= choice);
+    const Mask beyond = there & (gather(cumulative, row + next) <= choice);
     bin = select(beyond, next, bin);
   }
   const Uint b = bin & (guide_steps - 1), a = (bin >> guide_step_bits) & (guide_steps - 1);

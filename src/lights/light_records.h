@@ -122,6 +122,12 @@ struct EmissionGuideTable {
   uint32_t cells[3];
 };
 
+/// An ArrivalGuide: leaves of the tree are rows of `cumulative`, as of EmissionGuideTable.
+struct ArrivalGuideTable {
+  const RegionNode* tree;  ///< the root first; null: nothing is known
+  const float* cumulative;
+};
+
 struct MaterialTables;
 struct TriangleTable;
 
@@ -151,6 +157,7 @@ struct LightList {
   LightRegions regions;
   MirroredLightList mirrored;
   EmissionGuideTable emission;
+  ArrivalGuideTable arrivals;
 };
 
 /// Choices of a light for one opaque surface point, by the numbers u and deep of choose_light.

@@ -5,21 +5,26 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// Where the tables' row begins for the region of a place, in floats.
-CASTRAY_INLINE Uint row_at(const LightRegions& regions, const Vec& place) {
+/// The number of the region of a place.
+CASTRAY_INLINE Uint region_at(const RegionNode* tree, const Vec& place) {
   constexpr uint32_t stride = sizeof(RegionNode) / sizeof(float);
-  Uint at(0u), link = gather(regions.tree, &RegionNode::link, at);
+  Uint at(0u), link = gather(tree, &RegionNode::link, at);
   Mask inner = ~((link & 3u) == Uint(region_leaf));
   while (any(inner)) {
     const Uint axis = link & 3u;
     const Float x = select(axis == Uint(0u), place.x, select(axis == Uint(1u), place.y, place.z));
-    const Mask second = gather(regions.tree, &RegionNode::plane, at) <= x;
+    const Mask second = gather(tree, &RegionNode::plane, at) <= x;
     const Uint child = (link >> 2) + select(second, Uint(1u), Uint(0u));
     at = select(inner, child * stride, at);
-    link = gather(regions.tree, &RegionNode::link, at);
+    link = gather(tree, &RegionNode::link, at);
     inner = ~((link & 3u) == Uint(region_leaf));
   }
-  return (link >> 2) * uint32_t{most_light_cut};
+  return link >> 2;
+}
+
+/// Where the tables' row begins for the region of a place, in floats.
+CASTRAY_INLINE Uint row_at(const LightRegions& regions, const Vec& place) {
+  return region_at(regions.tree, place) * uint32_t{most_light_cut};
 }
 
 /// For MIS weights at p, of a point in the unit direction wi on a light of the given node: the pdf of light

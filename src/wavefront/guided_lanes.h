@@ -1,31 +1,39 @@
 #pragma once
 
+#include "lights/arrival_guide_lanes.h"
 #include "lights/mirrored_lights_lanes.h"
 #include "wavefront/context_lanes.h"
 #include "wavefront/shading_lanes.h"
 
-// Caustics that the camera sees by way of mirrors are not left to light paths. Of those that flat mirrors
-// make the camera's paths find more when a part of their directions leads to the lights' images in them.
+// Caustics that the camera sees by way of mirrors and glass are not left to light paths. The camera's paths
+// find more of them when a part of their directions leads to where they may come from: to the lights' images
+// in flat mirrors, or if there are none, to where light paths came from that arrived nearby.
 
 namespace castray::CASTRAY_ISA {
 
 /// Which of the vertices i to i + width - 1 have guided directions, and their guide.
 struct Guided {
   Mask at;
-  MirrorGuide guide;
+  MirrorGuide images;
+  Uint arrivals;
 };
 
 CASTRAY_INLINE Guided guided_at(const Context& c, const Vertices& v, int i, uint32_t vertex) {
-  const MirroredLightList& images = c.scene.lights.mirrored;
-  Guided guided{Mask(false), {}};
-  if (images.count == 0 || vertex == 0 || !c.left_to_light_paths) return guided;
+  const LightList& lights = c.scene.lights;
+  Guided guided{Mask(false), {}, Uint(0u)};
+  if ((lights.mirrored.count == 0 && !lights.arrivals.tree) || vertex == 0 || !c.left_to_light_paths)
+    return guided;
   const Mask active = first_lanes(v.count - i);
   const Uint slot = select(active, load(v.names.slot + i), Uint(0u));
   const Mask kept = gather(c.left_to_light_paths, slot) == Uint(0u);
   guided.at = active & kept & gathers(c.scene, records_of(v, i));
   if (none(guided.at)) return guided;
-  guided.guide = guide_to_mirrors(images, load(v.p, i), load(v.normal, i));
-  guided.at = guided.at & (guided.guide.sum > Float(0.f));
+  if (lights.arrivals.tree) {
+    guided.arrivals = arrivals_at(lights.arrivals, load(v.p, i));
+    return guided;
+  }
+  guided.images = guide_to_mirrors(lights.mirrored, load(v.p, i), load(v.normal, i));
+  guided.at = guided.at & (guided.images.sum > Float(0.f));
   return guided;
 }
 
@@ -33,7 +41,21 @@ CASTRAY_INLINE Guided guided_at(const Context& c, const Vertices& v, int i, uint
 CASTRAY_INLINE Float pdf_with_guide(const Context& c, const Vertices& v, int i, const Guided& guided,
                                     const Vec& wi, Float pdf) {
   if (none(guided.at)) return pdf;
-  return select(guided.at, guided_pdf(c.scene.lights.mirrored, guided.guide, load(v.p, i), wi, pdf), pdf);
+  const LightList& lights = c.scene.lights;
+  if (lights.arrivals.tree) {
+    const Float by_guide = arrival_pdf(lights.arrivals, guided.arrivals, wi);
+    const Float share(guided_share);
+    return select(guided.at, fma(share, by_guide, (Float(1.f) - share) * pdf), pdf);
+  }
+  return select(guided.at, guided_pdf(lights.mirrored, guided.images, load(v.p, i), wi, pdf), pdf);
+}
+
+/// A direction of the guide. `choice`, u, v: random numbers.
+CASTRAY_INLINE Vec guided_direction(const Context& c, const Vertices& vertices, int i, const Guided& guided,
+                                    Float choice, Float u, Float v) {
+  const LightList& lights = c.scene.lights;
+  if (lights.arrivals.tree) return direction_in(lights.arrivals.cumulative, guided.arrivals, choice, u, v);
+  return direction_to_image(lights.mirrored, guided.images, load(vertices.p, i), choice, u, v);
 }
 
 /// A direction for each of the vertices i to i + width - 1; as `sample` of their BSDF where none is guided.
@@ -42,12 +64,11 @@ CASTRAY_INLINE BsdfSample sample_guided(const Context& c, const Vertices& v, int
   const Guided guided = guided_at(c, v, i, vertex);
   if (none(guided.at)) return sample(shading.bsdf, shading.wo, lobe, u, w);
   const Float share(guided_share);
-  const Mask to_image = guided.at & (lobe < share);
+  const Mask by_guide = guided.at & (lobe < share);
   const Float rest = (lobe - share) * Float(1.f / (1 - guided_share));
-  BsdfSample s = sample(shading.bsdf, shading.wo, select(guided.at & ~to_image, rest, lobe), u, w);
-  const Vec wi = direction_to_image(c.scene.lights.mirrored, guided.guide, load(v.p, i),
-                                    lobe * Float(1.f / guided_share), u, w);
-  s.wi = select(to_image, to_local(shading.frame, wi), s.wi);
+  BsdfSample s = sample(shading.bsdf, shading.wo, select(guided.at & ~by_guide, rest, lobe), u, w);
+  const Vec wi = guided_direction(c, v, i, guided, lobe * Float(1.f / guided_share), u, w);
+  s.wi = select(by_guide, to_local(shading.frame, wi), s.wi);
   const BsdfValue value = evaluate(shading.bsdf, shading.wo, s.wi);
   const Float pdf = pdf_with_guide(c, v, i, guided, to_world(shading.frame, s.wi), value.pdf);
   s.weight = select(guided.at, select(pdf > Float(0.f), value.f_cos * (Float(1.f) / pdf), black()), s.weight);

@@ -92,11 +92,11 @@ struct TileResult {
   uint64_t edges[max_tiles] = {};  ///< by tile, a bit for each pixel: it sees an edge
 };
 
-/// What lights emit towards surfaces that focus.
+/// What lights emit towards surfaces that focus; or what arrives of it on others.
 struct FocusedEmission {
   int count;
-  const float* p[3];  ///< points of lights
-  const float* w[3];  ///< unit vectors along which it leaves them
+  const float* p[3];  ///< points of lights; or where it arrives
+  const float* w[3];  ///< unit vectors along which it leaves them; or to where it comes from
   const float* flux;  ///< greatest component, over the number of pixels
 };
 struct EmissionSink {
@@ -110,7 +110,8 @@ struct LightPathJob {
   uint64_t sample, first;
   int count;
   int width, height;                       ///< of the full image
-  const EmissionSink* emission = nullptr;  ///< if not null: gets what is focused, and paths end there
+  const EmissionSink* emission = nullptr;  ///< if not null: gets what is focused, and paths end there, or
+  const EmissionSink* arrivals = nullptr;  ///< go on to where it arrives, which this gets
 };
 
 /// Splats: radiance that light paths add to the pixels (x,y), over the number of light paths per pixel.

@@ -143,4 +143,9 @@ void KernelSceneData::use(EmissionGuide guide) {
   view.lights.emission = emission.table();
 }
 
+void KernelSceneData::use(ArrivalGuide guide) {
+  arrivals = std::move(guide);
+  view.lights.arrivals = arrivals.table();
+}
+
 }  // namespace castray

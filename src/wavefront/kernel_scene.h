@@ -8,6 +8,7 @@
 #include "geometry/facets.h"
 #include "geometry/instance_bvh.h"
 #include "geometry/wide_bvh.h"
+#include "lights/arrival_guide.h"
 #include "lights/emission_guide.h"
 #include "lights/environment.h"
 #include "lights/light_table.h"
@@ -30,6 +31,9 @@ struct KernelSceneData {
   /// Leads light paths to mirrors and glass.
   void use(EmissionGuide guide);
 
+  /// Leads paths from the camera to caustics that they see by way of mirrors and glass.
+  void use(ArrivalGuide guide);
+
   bool is_list() const { return !bvh && !instances; }
 
   Facets facets;                              ///< of a list
@@ -43,6 +47,7 @@ struct KernelSceneData {
   LightTable lights;
   std::vector<MirroredLight> mirrored;
   EmissionGuide emission;
+  ArrivalGuide arrivals;
   Environment environment;
   std::vector<KernelDelta> deltas;
   KernelScene view{};

@@ -16,22 +16,34 @@ void add(std::vector<UsefulEmission>& samples, const FocusedEmission& found) {
   }
 }
 
+EmissionSink sink_of(std::vector<UsefulEmission>& samples) {
+  return {&samples, [](void* self, const FocusedEmission& found) {
+            add(*static_cast<std::vector<UsefulEmission>*>(self), found);
+          }};
+}
+
+void append(std::vector<UsefulEmission>& to, const std::vector<UsefulEmission>& samples) {
+  to.insert(to.end(), samples.begin(), samples.end());
+}
+
 }  // namespace
 
-std::vector<UsefulEmission> useful_emission(const Pilot& pilot, KernelOptions options,
-                                            const LightPathsJob& light_paths_job) {
+FocusedLight focused_light(const Pilot& pilot, KernelOptions options, bool arrivals,
+                           const LightPathsJob& light_paths_job) {
   options.seed = hash_combine(0x9170fu, 1u);
-  std::vector<std::vector<UsefulEmission>> batches(batches_of(pilot));
+  std::vector<FocusedLight> batches(batches_of(pilot));
   for_each_batch(pilot, batches.size(), [&](std::size_t i, LightPathJob job) {
-    const EmissionSink sink{&batches[i], [](void* self, const FocusedEmission& found) {
-                              add(*static_cast<std::vector<UsefulEmission>*>(self), found);
-                            }};
-    job.emission = &sink;
+    const EmissionSink emission = sink_of(batches[i].emission), arriving = sink_of(batches[i].arrivals);
+    job.emission = &emission;
+    if (arrivals) job.arrivals = &arriving;
     light_paths_job(options, job, {});
   });
-  std::vector<UsefulEmission> samples;  // in the batches' order, whatever the threads
-  for (const auto& batch : batches) samples.insert(samples.end(), batch.begin(), batch.end());
-  return samples;
+  FocusedLight all;  // in the batches' order, whatever the threads
+  for (const FocusedLight& batch : batches) {
+    append(all.emission, batch.emission);
+    append(all.arrivals, batch.arrivals);
+  }
+  return all;
 }
 
 double light_paths_enough(std::size_t unguided, std::size_t guided) {

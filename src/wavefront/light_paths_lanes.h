@@ -37,10 +37,11 @@ CASTRAY_INLINE Emitted emit(const EmissionGuideTable& guide, const Vec& p, const
   const GuideCell cell = guide_cell(guide, p);
   if (none(cell.known)) return {by_cosine, Float(1.f)};
   const Mask guided = cell.known & (choice < Float(guided_share));
-  const Vec by_guide = direction_in(guide, cell, choice * Float(1.f / guided_share), u, v);
+  const Vec by_guide = direction_in(guide.cumulative, cell.row, choice * Float(1.f / guided_share), u, v);
   const Vec w = select(guided, by_guide, by_cosine);
   const Float cosine = max(dot(normal, w), Float(0.f)) * Float(1.f / pi);
-  const Float pdf = fma(Float(guided_share), pdf_of(guide, cell, w), Float(1 - guided_share) * cosine);
+  const Float pdf =
+      fma(Float(guided_share), pdf_of(guide.cumulative, cell.row, w), Float(1 - guided_share) * cosine);
   return {w, select(cell.known, select(cosine > Float(0.f), cosine / pdf, Float(0.f)), Float(1.f))};
 }
 
@@ -105,11 +106,31 @@ CASTRAY_STAGE inline void tell_focused(const Context& c, const Vertices& vertice
   sink.add(sink.self, {n, {out.p.x, out.p.y, out.p.z}, {w.x, w.y, w.z}, out.flux});
 }
 
+/// Tells which of the light paths with these vertices have come to a surface that does not focus. `out`: room
+/// for these.
+CASTRAY_STAGE inline void tell_arrivals(const Context& c, const Vertices& vertices,
+                                        const Emissions& emissions, const EmissionSink& sink,
+                                        Emissions& out) {
+  VecArray<capacity> w;
+  int n = 0;
+  for (int i = 0; i < vertices.count; i += width) {
+    const Mask arrived = first_lanes(vertices.count - i) & gathers(c.scene, records_of(vertices, i));
+    const Uint slot = select(arrived, load(vertices.names.slot + i), Uint(0u));
+    const Float carried = max_component(load(vertices.throughput, i)) * load(vertices.eta2 + i);
+    compress_store(out.p, n, arrived, load(vertices.p, i));
+    compress_store(w, n, arrived, load(vertices.wo, i));
+    compress_store(out.flux + n, arrived, gather(emissions.flux, slot) * carried);
+    n += count(arrived);
+  }
+  sink.add(sink.self, {n, {out.p.x, out.p.y, out.p.z}, {w.x, w.y, w.z}, out.flux});
+}
+
 /// Traces light paths to their ends, and gives their splats to the sink.
 template <class Geometry, uint32_t features>
 CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const KernelOptions& options,
                                           const LightPathJob& job, void* scratch, const SplatSink& sink) {
   Scratch& s = *static_cast<Scratch*>(scratch);
+  constexpr uint32_t last_to_arrive = 32;
   const TileJob no_tile{};
   Context c{scene, options, no_tile, s.ends, world_key(options, job.sample)};
   s.ends.fill();
@@ -118,11 +139,13 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
     closest<Geometry>(c, s.paths, false, s.hits);
     absorb<Geometry>(c, s.hits, false, s.paths);
     surfaces<Geometry, features, true>(c, s.paths, s.hits, false, s.vertices, s.radiance, true);
-    if (job.emission) {
+    if (job.emission && vertex == 1) {
       tell_focused(c, s.vertices, s.light_paths, *job.emission, s.focused);
-      break;
-    }
-    if (vertex > 1) {
+      if (!job.arrivals) break;
+    } else if (job.arrivals) {
+      tell_arrivals(c, s.vertices, s.light_paths, *job.arrivals, s.focused);
+      if (vertex == last_to_arrive) break;
+    } else if (vertex > 1) {
       CameraConnections& to = s.to_camera;
       connect_camera<Geometry, features>(c, job, vertex, s.vertices, s.hits, s.light_paths, to);
       sink.add(sink.self, {to.rays.count,
@@ -132,7 +155,7 @@ CASTRAY_INLINE uint64_t trace_light_paths(const KernelScene& scene, const Kernel
                            {to.by_chance.x, to.by_chance.y, to.by_chance.z}});
     }
     scatter<features>(c, s.vertices, vertex, first_roulette_of_suffixes, s.paths,
-                      vertex == 1 ? Transport::from_light_caustic : Transport::from_light);
+                      vertex == 1 || job.arrivals ? Transport::from_light_caustic : Transport::from_light);
   }
   return c.rays;
 }

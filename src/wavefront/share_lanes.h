@@ -57,8 +57,9 @@ CASTRAY_INLINE float facing_seen(const Context& c, const Vertices& x, int tile, 
 }
 
 /// Light reflected by vertices x, gathered tile by tile, becomes s.gathered. `direct`: the camera sees x.
+/// `guided`: they send rays to caustics.
 template <class Geometry, uint32_t features>
-CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) {
+CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct, bool guided = false) {
   const int n = c.job.tiles * tile_pixels;
   for (int i = 0; i < n; ++i) s.gathered.sum.x[i] = s.gathered.sum.y[i] = s.gathered.sum.z[i] = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
@@ -66,9 +67,11 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct) 
     s.boxes[tile].facing = direct ? facing_seen<Geometry>(c, x, tile, s.boxes[tile]) : 0;
     find_origins(x, tile * tile_pixels, c.scene.lights.environment.shines, s.suffixes.origins[tile]);
   }
+  if constexpr (features & feature_materials)
+    if (guided) trace_caustic_rays<Geometry, features>(c, s, x);
   light_each_by_deltas<Geometry, features>(c, s, x, direct);
   gather_light<Geometry, features>(c, x, s.boxes, s.suffixes, s.lights, s.visibility, s.gathered);
-  start_suffixes<features>(c, x, s.suffixes, s.paths);
+  start_suffixes<features>(c, x, guided, s.suffixes, s.paths);
   closest<Geometry>(c, s.paths, false, s.hits);
   gather_environment<Geometry, features>(c, x, s.boxes, s.suffixes, s.paths, s.hits, s.visibility,
                                          s.gathered);
@@ -106,7 +109,8 @@ CASTRAY_STAGE void share_chains(Context& c, Scratch& s) {
     ChainEnds& ends = s.chains.ends[left];
     if (!ends.any) continue;
     leave_suffixes_to_light_paths(c, left);
-    gather_all<Geometry, features>(c, s, ends.vertices, false);
+    const bool guided = left == 0 && c.left_to_light_paths && c.scene.lights.arrivals.tree;
+    gather_all<Geometry, features>(c, s, ends.vertices, false, guided);
     for (int i = 0; i < c.job.tiles * tile_pixels; i += width)
       store(s.radiance, i,
             fma_vec(load(ends.vertices.throughput, i), load(s.gathered.sum, i), load(s.radiance, i)));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "wavefront/caustic_rays_lanes.h"
 #include "wavefront/sequence_keys_lanes.h"
 #include "wavefront/shading_lanes.h"
 #include "wavefront/suffixes_lanes.h"
@@ -14,9 +15,11 @@ CASTRAY_INLINE Uint suffix_index(const Context& c, const TileSequence& tile, Uin
   return (item ^ Uint(order)) + Uint(((uint32_t)tile.sample * per_tile) & ((1u << index_bits) - 1));
 }
 
-/// Starts the suffixes: one BSDF sample at a random point of each stratum of a tile's origins.
+/// Starts the suffixes: one BSDF sample at a random point of each stratum of a tile's origins. `guided`:
+/// their points send rays to caustics, too.
 template <uint32_t features>
-CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes& suffixes, Paths& out) {
+CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, bool guided, Suffixes& suffixes,
+                                  Paths& out) {
   const auto per_tile = (uint32_t)c.options.suffixes;
   const Vec one{Float(1.f), Float(1.f), Float(1.f)};
   out.count = 0;
@@ -45,6 +48,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, Suffixes&
         wi = to_world(frame, s.wi);
         weight = select(shading.consistent(wi, s.wi), s.weight, black());
         going = going & shading.consistent(wi, s.wi) & ~(s.pdf <= Float(0.f));
+        if (guided) weight = weight * share_of_suffix(c, origins, gather_entries(x.p, entry), wi, s.pdf);
       } else {
         wi = to_world(make_frame(normal), cosine_hemisphere(n.u[0], n.u[1]));
       }

@@ -130,16 +130,20 @@ class Wavefront final : public PreparedIntegrator {
     std::vector<Workplace> workplaces_;
   };
 
-  /// Leads light paths to where mirrors and glass are. That many fewer of them are enough.
+  /// Leads light paths to where mirrors and glass are: that many fewer of them are enough. And paths from the
+  /// camera to where these send the light, unless mirrors show where it comes from.
   void learn_emission(const Job& job) {
     PilotJobs jobs(*this, job.threads);
-    const auto useful = [&] {
-      return useful_emission(jobs.pilot(job), kernel_options(job.options, plan_, false), jobs.light_paths());
+    const auto focused = [&](bool arrivals) {
+      return focused_light(jobs.pilot(job), kernel_options(job.options, plan_, false), arrivals,
+                           jobs.light_paths());
     };
-    const std::vector<UsefulEmission> unguided = useful();
+    const std::vector<UsefulEmission> unguided = focused(false).emission;
     data_.use(EmissionGuide(unguided));
-    plan_.light_paths_per_pixel = light_paths_enough(unguided.size(), useful().size());
+    FocusedLight guided = focused(data_.mirrored.empty());
+    plan_.light_paths_per_pixel = light_paths_enough(unguided.size(), guided.emission.size());
     if (plan_.light_paths_per_pixel == 1) data_.use(EmissionGuide());
+    data_.use(ArrivalGuide(std::move(guided.arrivals)));
   }
 
   /// Keeps paths from lights, and shared paths, unless a pilot says that others do better.
