@@ -11,9 +11,20 @@ namespace castray {
 
 namespace {
 
-constexpr std::size_t cache_line = 64, large_page = std::size_t{1} << 21;
+constexpr std::size_t cache_line = 64, page = 4096, large_page = std::size_t{1} << 21;
 
-std::size_t alignment_of(std::size_t bytes) { return bytes >= 2 * large_page ? large_page : cache_line; }
+/// Blocks of at least 64 pages are whole pages of their own, all provided at once: one by one, as they are
+/// used, takes several times as long.
+std::size_t alignment_of(std::size_t bytes) {
+  if (bytes >= 2 * large_page) return large_page;
+  return bytes >= 64 * page ? page : cache_line;
+}
+
+void* map(std::size_t size, int flags) {
+  void* all = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | flags, -1, 0);
+  if (all == MAP_FAILED) throw std::bad_alloc();
+  return all;
+}
 
 }  // namespace
 
@@ -24,10 +35,9 @@ void* allocate_large(std::size_t bytes) {
     if (!memory) throw std::bad_alloc();
     return std::memset(memory, 0, size);
   }
+  if (alignment_of(bytes) == page) return map(size, MAP_POPULATE);
   const std::size_t more = size + large_page;
-  void* all = mmap(nullptr, more, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (all == MAP_FAILED) throw std::bad_alloc();
-  char* const begin = static_cast<char*>(all);
+  char* const begin = static_cast<char*>(map(more, 0));
   const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % large_page;
   if (before > 0) munmap(begin, before);
   munmap(begin + before + size, more - before - size);
@@ -36,7 +46,7 @@ void* allocate_large(std::size_t bytes) {
 }
 
 void free_large(void* memory, std::size_t bytes) {
-  if (alignment_of(bytes) == large_page)
+  if (alignment_of(bytes) >= page)
     munmap(memory, bytes_in_large_pages(bytes));
   else
     std::free(memory);
