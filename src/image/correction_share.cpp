@@ -52,7 +52,7 @@ struct ColumnSums {
                  *known = first.per_sum.data(), *other_known = second.per_sum.data();
     float* __restrict products = with_error.data(), * __restrict sum = squares.data();
     for (std::size_t x = 0; x < first.per_sum.size(); ++x) {
-      const float both = (known[x] > 0) & (other_known[x] > 0) ? 1.f : 0.f;
+      const float both = ((known[x] > 0) & (other_known[x] > 0)) ? 1.f : 0.f;
       products[x] += both * (static_cast<float>(mean[x] - other_mean[x]) * (correction[x] - other[x]));
       sum[x] += both * (correction[x] * correction[x] + other[x] * other[x]);
     }

@@ -109,12 +109,12 @@ void HalfStrip::BlockSums::add_row(int width, bool any_below, const std::uint32_
     numbers[x] += here[x] > 0 ? 1.f : 0.f;
   }
   for (int x = 0; x + 1 < width; ++x) {
-    const float known = (here[x] > 0) & (here[x + 1] > 0) ? 1.f : 0.f;
+    const float known = ((here[x] > 0) & (here[x + 1] > 0)) ? 1.f : 0.f;
     squares[x] += known * square(own[x + 1] - own[x] - right[x]);
     both[x] += known;
   }
   for (int x = 0; any_below && x < width; ++x) {
-    const float known = (here[x] > 0) & (there[x] > 0) ? 1.f : 0.f;
+    const float known = ((here[x] > 0) & (there[x] > 0)) ? 1.f : 0.f;
     squares[x] += known * square(next[x] - own[x] - below[x]);
     both[x] += known;
   }
