@@ -38,6 +38,10 @@ struct PartialHit {
   float direction[3];
 };
 
+/// What of the points of a part of a triangle is there.
+enum CoverageCell : uint32_t { cell_missing, cell_there, cell_mixed };
+inline constexpr uint32_t no_coverage_grid = ~0u;
+
 /// Triangles that are only partly there. A point of one is there in some worlds and not in others, with the
 /// probability of its coverage; different points independently of each other. In each world the scene is an
 /// ordinary one with holes. A window's coverage depends on the ray's direction: it is what does not pass.
@@ -49,6 +53,10 @@ struct PartialTriangles {
   /// Null: of all colours the same is left everywhere.
   void (*tint)(const void* self, const PartialHit& hit, float* red, float* green, float* blue);
   bool met_once;  ///< a ray meets each of them once: the tree has none twice
+  /// Of a triangle whose coverage does not depend on the direction, a grid of CoverageCell over b1 and b2, as
+  /// in CoverageCells. Side 0: there are none.
+  uint32_t grid_side = 0;
+  const uint32_t *grids = nullptr, *cells = nullptr;
 };
 
 /// All of a scene as a tree of triangles.

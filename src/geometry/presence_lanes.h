@@ -23,6 +23,21 @@ CASTRAY_INLINE bool is_partial(const PartialTriangles& partial, uint32_t triangl
   return partial.triangles[triangle / 32] >> (triangle % 32) & 1;
 }
 
+/// What of a partial triangle is there around a point.
+CASTRAY_INLINE uint32_t coverage_cell(const PartialTriangles& partial, uint32_t triangle, float b1,
+                                      float b2) {
+  const uint32_t side = partial.grid_side;
+  if (side == 0 || partial.grids[triangle] == no_coverage_grid) return cell_mixed;
+  const auto place = [side](float b) {
+    const auto at = (uint32_t)(b * (float)side);
+    return at < side ? at : side - 1;
+  };
+  const uint32_t column = place(b1), row = place(b2);
+  if (column + row >= side) return cell_mixed;  // by rounding
+  const uint32_t i = row * side + column;
+  return partial.cells[partial.grids[triangle] + i / 16] >> (2 * (i % 16)) & 3;
+}
+
 /// Directions of the rays of a batch.
 struct RayDirections {
   const float *x, *y, *z;
@@ -50,6 +65,8 @@ struct PartialHits {
   /// 1 where the triangle is not partial.
   CASTRAY_INLINE float coverage(uint32_t ray, uint32_t triangle, float b1, float b2) const {
     if (!is_partial(partial, triangle)) return 1;
+    const uint32_t cell = coverage_cell(partial, triangle, b1, b2);
+    if (cell != cell_mixed) return cell == cell_there ? 1.f : 0.f;
     return partial.coverage(partial.self, at(ray, triangle, b1, b2));
   }
 };

@@ -42,7 +42,7 @@ bool has_emission_images(const Scene& scene) {
   return !scene.triangle_uvs.empty() && std::ranges::any_of(scene.materials, &Material::has_emission_map);
 }
 
-PartialTriangles partial_triangles(const Coverage& coverage, BuildQuality build) {
+PartialTriangles partial_triangles(const Coverage& coverage, const CoverageCells& cells, BuildQuality build) {
   const auto share_there = [](const void* self, const PartialHit& hit) {
     const Vec3f direction(hit.direction[0], hit.direction[1], hit.direction[2]);
     return static_cast<const Coverage*>(self)->share_there(
@@ -55,8 +55,8 @@ PartialTriangles partial_triangles(const Coverage& coverage, BuildQuality build)
     *red *= left.x, *green *= left.y, *blue *= left.z;
   };
   void (*const tints)(const void*, const PartialHit&, float*, float*, float*) = tint;
-  return {coverage.partial_triangles(), share_there, &coverage, coverage.tints() ? tints : nullptr,
-          build != BuildQuality::best};
+  return {coverage.partial_triangles(), share_there,  &coverage,     coverage.tints() ? tints : nullptr,
+          build != BuildQuality::best,  cells.side(), cells.grids(), cells.cells()};
 }
 
 std::vector<std::uint32_t> pack_materials(const Scene& scene) {
@@ -69,7 +69,11 @@ std::vector<std::uint32_t> pack_materials(const Scene& scene) {
 }  // namespace
 
 KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width, int height, int threads)
-    : coverage(scene), materials(scene), environment(scene), deltas(kernel_deltas(scene.delta_lights)) {
+    : coverage(scene),
+      coverage_cells(scene),
+      materials(scene),
+      environment(scene),
+      deltas(kernel_deltas(scene.delta_lights)) {
   if (plan.list) {
     facets = make_facets(scene);
     lights = LightTable(scene, facets.facets, plan.choose_lights_by_importance, threads);
@@ -93,7 +97,7 @@ KernelSceneData::KernelSceneData(const Scene& scene, const Plan& plan, int width
     view.lights = lights.list();
     view.lights.may_be_covered = may_be_covered(scene, emitting);
     view.geometry.tree.triangles = triangle_table(scene, material_words);
-    view.geometry.tree.partial = partial_triangles(coverage, plan.build);
+    view.geometry.tree.partial = partial_triangles(coverage, coverage_cells, plan.build);
   }
   if (plan.light_paths) mirrored = mirrored_lights(scene, lights.lights());
   view.lights.mirrored = {mirrored.data(), static_cast<int>(mirrored.size())};

@@ -13,6 +13,7 @@
 #include "lights/environment.h"
 #include "lights/light_table.h"
 #include "materials/coverage.h"
+#include "materials/coverage_cells.h"
 #include "materials/kernel_materials.h"
 #include "plan/plan.h"
 #include "wavefront/kernel_api.h"
@@ -43,6 +44,7 @@ struct KernelSceneData {
   std::optional<InstanceBvh> instances;       ///< of instances
   std::vector<std::uint32_t> material_words;  ///< Scene::triangle_material, two in a word
   Coverage coverage;
+  CoverageCells coverage_cells;
   KernelMaterials materials;
   LightTable lights;
   std::vector<MirroredLight> mirrored;
