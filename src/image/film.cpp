@@ -351,9 +351,9 @@ std::string samples_text(double samples_per_pixel) {
 
 Metadata describe(const Film& film) {
   // What the scene is, and what pilots decided; all other items are flags.
-  static constexpr std::string_view no_flags[] = {"scene",        "hash",        "view",
-                                                  "sharing",      "light-paths", "differences",
-                                                  "light-choice", "suffixes",    "light-path-number"};
+  static constexpr std::string_view no_flags[] = {
+      "scene",       "hash",         "view",     "sharing",           "light-paths",
+      "differences", "light-choice", "suffixes", "light-path-number", "branches"};
   Metadata metadata;
   std::string& options = metadata["castray:options"];
   for (const std::string& item : items_of(film.key)) {

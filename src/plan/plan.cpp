@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "castray/error.h"
@@ -96,6 +97,9 @@ Plan make_plan(const Scene& scene, const RenderOptions& options, const Window& w
   plan.lights_by_solid_angle = options.lights == LightSampling::solid_angle;
   plan.suffixes = !may_share(needs) ? 0 : options.reuse.automatic ? 64 : options.reuse.suffixes;
   if (options.reuse.automatic && needs.specular) plan.few_suffixes = plan.suffixes / 2;
+  // One vertex later where plain paths are taken for their little noise: in the open, where most of them soon
+  // leave the scene anyway. With mirrors and glass, behind which paths are long, that gains nothing.
+  if (!needs.specular) plan.first_roulette = first_roulette_vertex + 1;
   plan.narrow_coats = needs.narrow_coats;
   plan.matte = !needs.specular && !needs.glossy && !needs.coverage && !needs.glass_shares;
   plan.light_points = needs.lights > few_light_triangles ? 16 : 8;
@@ -164,6 +168,18 @@ void choose_number_of_light_paths(Plan& plan, double gain_of_twice) {
   plan.light_paths_per_pixel *= 2;
   plan.kernel +=
       fmt::format(", twice as many paths from lights (by a pilot, {} as efficient)", times(gain_of_twice));
+}
+
+void choose_two_branches(Plan& plan, double gain, double error) {
+  constexpr double enough = 1.1;
+  if (plan.suffixes > 0 || gain == 1) return;  // 1: none was tried
+  // the pilot's error hides a gain as often as it feigns one: half of it counts
+  const bool taken = gain > std::max(enough, std::sqrt(error));
+  if (taken) plan.branches = 2;
+  plan.kernel += fmt::format(
+      ", {} from what each camera ray meets (by a pilot, two are {} as efficient, give or take a factor of "
+      "{})",
+      taken ? "two of them" : "one", times(gain), two_digits(error));
 }
 
 void choose_reconstruction(Plan& plan, std::optional<double> gain) {

@@ -7,22 +7,25 @@
 
 #include "castray/render_options.h"
 #include "castray/scene.h"
+#include "core/contract.h"
 
 namespace castray {
 
 /// What is chosen for a scene before it is rendered.
 struct Plan {
-  bool list = false;                         ///< a flat list instead of a tree
-  std::uint32_t features = 0;                ///< KernelFeature set of the kernel
-  bool mis = false;                          ///< light and BSDF sampling share emission
-  bool light_paths = false;                  ///< bring the caustics that the camera sees directly
-  double light_paths_per_pixel = 1;          ///< of the full image, for each sample
-  bool twice_the_light_paths = false;        ///< these are twice as many as usual
-  int suffixes = 0;                          ///< shared by each 8x8 tile; 0: no sharing
-  int few_suffixes = 0;                      ///< where so many may do: beside mirrors and glass; or 0
-  int light_points = 0;                      ///< shared by each tile
-  int environment_points = 0;                ///< likewise
-  bool choose_lights_by_importance = false;  ///< for the point to be lit, instead of by power
+  bool list = false;                   ///< a flat list instead of a tree
+  std::uint32_t features = 0;          ///< KernelFeature set of the kernel
+  bool mis = false;                    ///< light and BSDF sampling share emission
+  bool light_paths = false;            ///< bring the caustics that the camera sees directly
+  double light_paths_per_pixel = 1;    ///< of the full image, for each sample
+  bool twice_the_light_paths = false;  ///< these are twice as many as usual
+  int suffixes = 0;                    ///< shared by each 8x8 tile; 0: no sharing
+  int few_suffixes = 0;                ///< where so many may do: beside mirrors and glass; or 0
+  std::uint32_t first_roulette = first_roulette_vertex;  ///< vertex of plain paths where it starts
+  int branches = 1;                                      ///< of plain paths, from what a camera ray meets
+  int light_points = 0;                                  ///< shared by each tile
+  int environment_points = 0;                            ///< likewise
+  bool choose_lights_by_importance = false;              ///< for the point to be lit, instead of by power
   bool reconstruct = false;            ///< if paths are shared, films keep what images are reconstructed from
   int edge_samples = 1;                ///< if so: of tiles that see an edge, for each of the others
   std::size_t light_regions = 0;       ///< from which it is known what lights are seen; 0: it is not
@@ -59,6 +62,11 @@ void choose_caustics(Plan& plan, double gain_of_light_paths);
 
 /// Takes twice as many light paths if these are that many times as efficient, and that is much.
 void choose_number_of_light_paths(Plan& plan, double gain_of_twice);
+
+/// Lets two branches go on where paths are plain, if these are that many times as efficient as one and it is
+/// more than 1.1, and than the root of the standard error, a factor. Says so in Plan::kernel. After
+/// choose_by_pilot.
+void choose_two_branches(Plan& plan, double gain, double error);
 
 /// Keeps reconstruction if it is more efficient than means, that many times by a pilot; nothing if none was
 /// asked.

@@ -23,27 +23,37 @@ CASTRAY_INLINE bool may_have_edges(const KernelOptions& options, uint32_t edges)
   return options.max_depth == 0 || edges <= options.max_depth;
 }
 
+/// Light samples at vertices that are number `vertex` of their paths.
+template <class Geometry, uint32_t features>
+CASTRAY_STAGE void light_vertices(Context& c, Scratch& s, const Vertices& vertices, uint32_t vertex) {
+  if (c.scene.lights.count > 0) {
+    light<Geometry, features>(c, vertices, vertex, s.shadow_rays);
+    add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+  }
+  if (c.scene.lights.environment.width > 0) {
+    light_environment<Geometry, features>(c, vertices, vertex, s.shadow_rays);
+    add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+  }
+  if (c.scene.lights.deltas.count > 0) {
+    light_deltas<Geometry, features>(c, vertices, vertex, s.shadow_rays);
+    add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+  }
+}
+
 /// Follows paths from their vertices, which are number `vertex` of each path, to the end: a light sample
-/// at each vertex, then the next ray. With `chains` only to the ends of these.
+/// at each vertex, unless the first ones are `lit`, then the next ray. With `chains` only to the ends of
+/// these.
 template <class Geometry, uint32_t features>
 CASTRAY_STAGE void follow(Context& c, Scratch& s, Vertices& vertices, uint32_t vertex, uint32_t roulette,
-                          Chains* chains = nullptr) {
+                          Chains* chains = nullptr, bool lit = false) {
   const bool may_find_lights = c.options.mis || (features & feature_materials);
   Vertices* current = &vertices;
   for (; may_have_edges(c.options, vertex + 2); ++vertex) {
-    if (c.scene.lights.count > 0) {
-      light<Geometry, features>(c, *current, vertex, s.shadow_rays);
-      add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
+    if (!lit) {
+      light_vertices<Geometry, features>(c, s, *current, vertex);
+      if (vertex == 0) keep_direct(c, s);
     }
-    if (c.scene.lights.environment.width > 0) {
-      light_environment<Geometry, features>(c, *current, vertex, s.shadow_rays);
-      add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
-    }
-    if (c.scene.lights.deltas.count > 0) {
-      light_deltas<Geometry, features>(c, *current, vertex, s.shadow_rays);
-      add_unblocked<Geometry>(c, s.shadow_rays, s.radiance);
-    }
-    if (vertex == 0) keep_direct(c, s);
+    lit = false;
     scatter<features>(c, *current, vertex, roulette, s.paths);
     if (s.paths.count == 0) return;
     closest<Geometry>(c, s.paths, false, s.hits);

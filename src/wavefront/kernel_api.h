@@ -41,16 +41,18 @@ struct KernelOptions {
   bool sobol;
   bool jitter;
   bool fixed_roulette;
-  float survival;          ///< survival probability of fixed roulette
-  uint32_t max_depth;      ///< in path edges; 0: no limit
-  float most_indirect;     ///< bound of each component of a sample's indirect part; may be infinite
-  bool mis;                ///< weigh emission found by BSDF sampling against light sampling
-  bool light_paths;        ///< bring the caustics that the camera sees directly: see light_paths_lanes.h
-  int suffixes;            ///< traced for each tile; 0: pixels share no paths
-  int light_points;        ///< shared by the pixels of a tile
-  int environment_points;  ///< samples of the environment, likewise; a power of two, or 0
-  uint64_t ragged;         ///< samples with a lower index have tiles with ragged edges
-  uint32_t seed;           ///< hashed; what pixel keys start from
+  float survival;           ///< survival probability of fixed roulette
+  uint32_t first_roulette;  ///< vertex of plain paths at which roulette by throughput starts
+  uint32_t max_depth;       ///< in path edges; 0: no limit
+  float most_indirect;      ///< bound of each component of a sample's indirect part; may be infinite
+  bool mis;                 ///< weigh emission found by BSDF sampling against light sampling
+  bool light_paths;         ///< bring the caustics that the camera sees directly: see light_paths_lanes.h
+  int suffixes;             ///< traced for each tile; 0: pixels share no paths
+  int branches;             ///< of plain paths, from what a camera ray meets; 0 counts as 1
+  int light_points;         ///< shared by the pixels of a tile
+  int environment_points;   ///< samples of the environment, likewise; a power of two, or 0
+  uint64_t ragged;          ///< samples with a lower index have tiles with ragged edges
+  uint32_t seed;            ///< hashed; what pixel keys start from
 };
 
 inline constexpr int tile_size = 8;

@@ -18,12 +18,14 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan, boo
   k.jitter = options.jitter;
   k.fixed_roulette = options.rr.has_value();
   k.survival = static_cast<float>(options.rr.value_or(1.0));
+  k.first_roulette = plan.first_roulette;
   k.max_depth = static_cast<std::uint32_t>(options.max_depth);
   k.most_indirect =
       static_cast<float>(options.clamp_indirect.value_or(std::numeric_limits<double>::infinity()));
   k.mis = plan.mis;
   k.light_paths = traces_light_paths(options, plan);
   k.suffixes = plan.suffixes;
+  k.branches = plan.branches;
   k.light_points = plan.light_points;
   k.environment_points = plan.environment_points;
   // from then on so many grids lie over each other that none can be told

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "wavefront/branches_lanes.h"
 #include "wavefront/camera_rays_lanes.h"
 #include "wavefront/share_lanes.h"
 
@@ -41,8 +42,10 @@ CASTRAY_INLINE void render_tiles(const KernelScene& scene, const KernelOptions& 
   keep_direct(c, s);
   if (options.suffixes > 0 && may_have_edges(options, 2))
     share<Geometry, features>(c, s);
+  else if (options.branches > 1 && may_have_edges(options, 2))
+    follow_branches<Geometry, features>(c, s);
   else
-    follow<Geometry, features>(c, s, s.camera, 0, first_roulette_vertex);
+    follow<Geometry, features>(c, s, s.camera, 0, options.first_roulette);
   clamp_indirect(c, s);
   copy_radiance(s.radiance, job.tiles * tile_pixels, result.radiance);
   result.rays += c.rays;

@@ -11,6 +11,7 @@
 #include "wavefront/kernel_options.h"
 #include "wavefront/learn_emission.h"
 #include "wavefront/pilot.h"
+#include "wavefront/pilot_branches.h"
 #include "wavefront/try_lights.h"
 #include "wavefront/wavefront_run.h"
 
@@ -37,6 +38,9 @@ class Wavefront final : public PreparedIntegrator {
             job.options.reconstruct == Switch::automatic && keeps_differences(job.options, plan_),
         .few = plan_.few_suffixes > 0};
     if (open.caustics || open.sharing || open.reconstruction) as_pilot([&] { choose_techniques(job, open); });
+    // behind mirrors and glass, whose lobes are narrow, branches find the same again
+    const bool specular = plan_.few_suffixes > 0;
+    if (open.sharing && plan_.suffixes == 0 && !specular) as_pilot([&] { try_branches(job); });
   }
 
   BandWork work(const Job& job) const override {
@@ -58,6 +62,7 @@ class Wavefront final : public PreparedIntegrator {
     std::string items = plan_.light_paths ? "; light-paths=on" : "";
     if (plan_.twice_the_light_paths) items += "; light-path-number=twice";
     items += plan_.suffixes > 0 ? "; sharing=on" : "; sharing=off";
+    if (plan_.branches > 1) items += fmt::format("; branches={}", plan_.branches);
     if (plan_.suffixes > 0 && plan_.suffixes == plan_.few_suffixes)
       items += fmt::format("; suffixes={}", plan_.suffixes);
     if (keeps_differences(job.options, plan_))
@@ -163,6 +168,12 @@ class Wavefront final : public PreparedIntegrator {
     const std::optional<double>& twice =
         plan_.suffixes > 0 ? gains.twice_with_shared : gains.twice_with_plain;
     if (by_lights && twice) choose_number_of_light_paths(plan_, *twice);
+  }
+
+  void try_branches(const Job& job) {
+    PilotJobs jobs(*this, job.threads);
+    const BranchGain gain = find_branches(jobs.pilot(job), kernel_options(job.options, plan_, false));
+    choose_two_branches(plan_, gain.gain, gain.error);
   }
 
   const BvhStats& tree_stats() const { return data_.bvh ? data_.bvh->stats() : data_.instances->stats(); }

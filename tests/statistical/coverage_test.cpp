@@ -181,6 +181,15 @@ TEST_CASE("the wavefront agrees with castRay where boxes are only partly there",
         }));
 }
 
+TEST_CASE("two branches of plain paths have the mean of castRay", "[statistical]") {
+  const Scene scene = standard_scene("kinds/foliage");
+  RenderOptions reference = reference_in_double(8), options = wavefront_options(256, 4, 1);
+  reference.width = reference.height = 256;
+  reference.crop = options.crop = Window{.x0 = 100, .y0 = 84, .x1 = 124, .y1 = 108};
+  REQUIRE_THAT(render(scene, options).film.key, Catch::Contains("; branches=2"));
+  check_same_mean("branches", blocks_of(scene, reference, 24), blocks_of(scene, options, 24));
+}
+
 TEST_CASE("a pixel sees what is half there in half of its samples, not by chance") {
   SceneSketch sketch;
   const auto cloth = sketch.add_material({.name = "cloth", .kd = Vec3d(0.8), .coverage = 0.5});
