@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "castray/film.h"
-#include "core/contract.h"
+#include "core/sequences.h"
 #include "plan/sample_map.h"
 #include "wavefront/kernel_api.h"
 
@@ -13,7 +13,8 @@ namespace castray {
 static_assert(tile_size == tile_side && ragged_reach == tile_reach);  // films take the tiles of kernels
 
 /// The tiles that cover a window for one sample. Where paths are shared the grid is shifted anew for each
-/// sample, so that no tile's edge stays in one place.
+/// sample, by Sobol's points: each 8 samples from a multiple of 8 on have their edges in 8 different columns
+/// and rows, and each 64 have all shifts, so that edges seldom add up.
 struct TileGrid {
   int shift_x = 0, shift_y = 0;  ///< of the grid, to the left and up, in pixels
   int reach;                     ///< over a tile's edges, in pixels
@@ -21,10 +22,9 @@ struct TileGrid {
 
   TileGrid(const Window& window, const KernelOptions& options, std::uint64_t sample) {
     if (options.suffixes > 0) {
-      const std::uint32_t h =
-          hash_combine(hash_combine(options.seed, 0x5b1f7u), static_cast<std::uint32_t>(sample));
-      shift_x = static_cast<int>(h % tile_size);
-      shift_y = static_cast<int>(h / tile_size % tile_size);
+      const auto u = sample_block(SamplerKind::sobol, hash_combine(options.seed, 0x5b1f7u), sample, 0);
+      shift_x = static_cast<int>(u[0] * tile_size);
+      shift_y = static_cast<int>(u[1] * tile_size);
     }
     reach = sample < options.ragged ? ragged_reach : 0;
     const auto tile_of = [](int pixel) {
