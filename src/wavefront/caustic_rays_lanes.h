@@ -11,17 +11,18 @@
 
 namespace castray::CASTRAY_ISA {
 
-/// How many suffixes a point of a tile has, on average.
-CASTRAY_INLINE float suffixes_of_point(const Context& c, const Origins& origins) {
-  return (float)c.options.suffixes / (float)origins.count;
+/// How many suffixes are expected to start at these pixels of a tile.
+CASTRAY_INLINE Float suffixes_of_pixel(const Context& c, const Origins& origins, Uint pixel) {
+  const Float mean((float)c.options.suffixes / (float)origins.count);
+  return origins.even ? mean : mean * gather(origins.share, pixel);
 }
 
-/// Of what a suffix from p with this pdf brings where it meets mirrors or glass, the balance heuristic's
-/// share.
-CASTRAY_INLINE Float share_of_suffix(const Context& c, const Origins& origins, const Vec& p, const Vec& wi,
-                                     Float pdf) {
+/// Of what a suffix from p, which a pixel sees, with this pdf brings where it meets mirrors or glass, the
+/// balance heuristic's share.
+CASTRAY_INLINE Float share_of_suffix(const Context& c, const Origins& origins, Uint pixel, const Vec& p,
+                                     const Vec& wi, Float pdf) {
   const ArrivalGuideTable& arrivals = c.scene.lights.arrivals;
-  const Float by_suffixes = pdf * Float(suffixes_of_point(c, origins));
+  const Float by_suffixes = pdf * suffixes_of_pixel(c, origins, pixel);
   return by_suffixes / (by_suffixes + arrival_pdf(arrivals, arrivals_at(arrivals, p), wi));
 }
 
@@ -42,7 +43,8 @@ CASTRAY_STAGE void aim_at_caustics(const Context& c, const Vertices& x, const Su
     const Shading shading = shading_of<features>(c.scene, x, i);
     const Vec local = to_local(shading.frame, wi);
     const BsdfValue value = evaluate(shading.bsdf, shading.wo, local);
-    const Float by_suffixes = value.pdf * Float(suffixes_of_point(c, suffixes.origins[i / tile_pixels]));
+    const Uint pixel = Uint((uint32_t)(i % tile_pixels)) + lane_index();
+    const Float by_suffixes = value.pdf * suffixes_of_pixel(c, suffixes.origins[i / tile_pixels], pixel);
     const Float weight = Float(1.f) / (arrival_pdf(arrivals, row, wi) + by_suffixes);
     const Vec throughput = load(x.throughput, i) * value.f_cos * weight;
     const Mask going = there & shading.consistent(wi, local) & (max_component(throughput) > Float(0.f));

@@ -9,11 +9,12 @@ namespace castray::CASTRAY_ISA {
 /// What the pixels of a tile gather from a direction to the environment. Directions come from the tile's
 /// suffixes that escaped, and from environment samples: the balance heuristic over all.
 template <class Geometry, uint32_t features>
-CASTRAY_STAGE void gather_direction(Context& c, const FarSender& y, const EscapedLight& light, float stratum,
-                                    Gatherers& gatherers, VisibilityScratch& s, Gathered& gathered) {
+CASTRAY_STAGE void gather_direction(Context& c, const FarSender& y, const EscapedLight& light,
+                                    const Origins& origins, float stratum, Gatherers& gatherers,
+                                    VisibilityScratch& s, Gathered& gathered) {
   Transfer t;
   transfer<Geometry, features>(c, y, gatherers, s, t);
-  const float found = ordered_sum(t.density) / stratum;
+  const float found = found_from(origins, t.density) / stratum;
   const float density = found + (float)c.options.environment_points * lane(light.density, 0);
   if (!(density > 0)) return;
   add_scaled<features>(gathered, gatherers.first, t, light.radiance * Float(1.f / density));
@@ -31,14 +32,16 @@ CASTRAY_STAGE void gather_environment(Context& c, const Vertices& x, const TileB
   int k = 0;
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
-    const float stratum = stratum_of(c, suffixes.origins[tile]);
+    const Origins& origins = suffixes.origins[tile];
+    const float stratum = stratum_of(c, origins);
     for (; k < rays.count; ++k) {
       const int suffix = (int)rays.names.slot[k] - batch_size;
       if (suffix >= (tile + 1) * tile_pixels) break;
       if (hits.primitive[k] != no_hit) continue;
       const Vec w = broadcast_entry(rays.d, k);
       gather_direction<Geometry, features>(c, {w, (int)suffixes.origin[suffix] - gatherers.first},
-                                           light_from(environment, w), stratum, gatherers, s, gathered);
+                                           light_from(environment, w), origins, stratum, gatherers, s,
+                                           gathered);
     }
     const TileSequence sequence = tile_sequence(c, tile);
     for (uint32_t first = 0; first < points; first += width) {
@@ -48,8 +51,8 @@ CASTRAY_STAGE void gather_environment(Context& c, const Vertices& x, const TileB
       for (int l = 0; l < width && first + (uint32_t)l < points; ++l)
         gather_direction<Geometry, features>(
             c, {broadcast_lane(sample.w, l), -1},
-            {broadcast_lane(sample.light.radiance, l), Float(lane(sample.light.density, l))}, stratum,
-            gatherers, s, gathered);
+            {broadcast_lane(sample.light.radiance, l), Float(lane(sample.light.density, l))}, origins,
+            stratum, gatherers, s, gathered);
     }
   }
 }

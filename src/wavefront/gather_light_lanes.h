@@ -45,7 +45,8 @@ CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* 
     if ((features & feature_materials) && boxes[tile].empty) continue;
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     const TileSequence sequence = tile_sequence(c, tile);
-    const float stratum = stratum_of(c, suffixes.origins[tile]);
+    const Origins& origins = suffixes.origins[tile];
+    const float stratum = stratum_of(c, origins);
     const Receiver receiver = receiver_of(c, gatherers, lights[tile]);
     for (int first = 0; first < points; first += width) {
       const LightPoint point = tile_light_points(c, receiver, lights[tile], sequence, first);
@@ -60,7 +61,7 @@ CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* 
         const float density = lane(point.density, l);
         Vec radiance = broadcast_lane(point.weight, l);
         if (c.options.mis)
-          radiance = radiance * light_share(Float(density), Float(ordered_sum(t.density) / stratum));
+          radiance = radiance * light_share(Float(density), Float(found_from(origins, t.density) / stratum));
         add_scaled<features>(gathered, gatherers.first, t, radiance);
       }
     }

@@ -97,7 +97,8 @@ CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxe
                                    const Suffixes& suffixes, const Radiance& radiance, VisibilityScratch& s,
                                    Gathered& gathered) {
   for (int tile = 0; tile < c.job.tiles; ++tile) {
-    const float stratum = stratum_of(c, suffixes.origins[tile]);
+    const Origins& origins = suffixes.origins[tile];
+    const float stratum = stratum_of(c, origins);
     Gatherers gatherers{x, tile * tile_pixels, boxes[tile]};
     for (int j = 0; j < c.options.suffixes; ++j) {
       const int suffix = tile * tile_pixels + j, slot = batch_size + suffix,
@@ -118,12 +119,14 @@ CASTRAY_STAGE void gather_suffixes(Context& c, const Vertices& x, const TileBoxe
           Sender{broadcast_entry(suffixes.y.p, entry), broadcast_entry(suffixes.y.normal, entry),
                  origin - gatherers.first, true},
           gatherers, s, t);
-      const float density = ordered_sum(t.density) / stratum;
+      const float density = found_from(origins, t.density) / stratum;
       if (!(density > 0)) continue;
       const Vec emission =
           emitted * (bsdf_share(Float(suffixes.light_density[entry]), Float(density)) * Float(1.f / density));
       if constexpr (features & feature_materials) {
         if (glossy) {
+          if (!origins.even)
+            for (int i = 0; i < tile_vectors; ++i) t.density[i] *= load(origins.share + i * width);
           add_glossy<features>(c, suffixes, suffix, radiance, gatherers, t, stratum, emission, gathered);
           continue;
         }

@@ -141,35 +141,4 @@ float side_seen(const Vertices& x, int first) {
   return 2 * fronts < seen ? -1.f : 1.f;
 }
 
-namespace {
-
-constexpr uint32_t normal_cells = 6 * 25;
-
-/// The cell of a normal: its largest axis and side, and a grid of 5x5 over the other two components, which
-/// are within 0.71. Normals along the axes are in the middle of their cells.
-CASTRAY_INLINE uint32_t cell_of(const float (&n)[3]) {
-  const float x = __builtin_fabsf(n[0]), y = __builtin_fabsf(n[1]), z = __builtin_fabsf(n[2]);
-  const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-  const auto cell = [&](int other) { return (uint32_t)(3 * n[(axis + other) % 3] + 2.5f); };
-  return (uint32_t)(2 * axis + (n[axis] < 0)) * 25 + cell(1) * 5 + cell(2);
-}
-
-}  // namespace
-
-void find_origins(const Vertices& x, int first, bool by_normal, Origins& origins) {
-  origins.count = tile_pixels;
-  for (int i = 0; i < tile_pixels; ++i) origins.entry[i] = (uint32_t)(first + i);
-  if (!by_normal) return;
-  uint32_t cell[tile_pixels], begin[normal_cells + 2] = {};
-  for (int i = 0; i < tile_pixels; ++i) {
-    const float n[3] = {x.normal.x[first + i], x.normal.y[first + i], x.normal.z[first + i]};
-    const bool on_surface = n[0] != 0 || n[1] != 0 || n[2] != 0;
-    cell[i] = on_surface ? cell_of(n) : normal_cells;
-    ++begin[cell[i] + 1];
-  }
-  for (uint32_t i = 0; i <= normal_cells; ++i) begin[i + 1] += begin[i];
-  origins.count = begin[normal_cells] > 0 ? begin[normal_cells] : 1;
-  for (int i = 0; i < tile_pixels; ++i) origins.entry[begin[cell[i]]++] = (uint32_t)(first + i);
-}
-
 }  // namespace castray::CASTRAY_ISA

@@ -25,12 +25,6 @@ struct TileBoxes {
   bool empty;    ///< no point of the tile is on a surface
 };
 
-/// Where the suffixes of a tile may start.
-struct Origins {
-  uint32_t count;               ///< at least 1
-  uint32_t entry[tile_pixels];  ///< of the camera's vertices
-};
-
 /// The points of one tile: entries first to first + 63 of the camera's vertices.
 struct Gatherers {
   const Vertices& x;
@@ -56,10 +50,6 @@ CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {
     for (int i = 0; i < half; ++i) sum[i] += sum[i + half];
   return sum[0];
 }
-
-/// The points of the tile from `first` on as origins: as they come; or, `by_normal`, only those on a surface,
-/// and those of like orientation side by side.
-void find_origins(const Vertices& x, int first, bool by_normal, Origins& origins);
 
 /// Bounds of a tile's points; with `in_parts` also those of its parts and groups.
 void bound_tile(const Vertices& x, int first, bool in_parts, TileBoxes& boxes);

@@ -65,7 +65,8 @@ CASTRAY_STAGE void gather_all(Context& c, Scratch& s, Vertices& x, bool direct, 
   for (int tile = 0; tile < c.job.tiles; ++tile) {
     bound_tile(x, tile * tile_pixels, Geometry::has_many_blockers, s.boxes[tile]);
     s.boxes[tile].facing = direct ? facing_seen<Geometry>(c, x, tile, s.boxes[tile]) : 0;
-    find_origins(x, tile * tile_pixels, c.scene.lights.environment.shines, s.suffixes.origins[tile]);
+    find_origins(x, tile * tile_pixels, c.scene.lights.environment.shines, (uint32_t)c.options.suffixes,
+                 s.suffixes.origins[tile]);
   }
   if constexpr (features & feature_materials)
     if (guided) trace_caustic_rays<Geometry, features>(c, s, x);

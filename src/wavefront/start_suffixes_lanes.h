@@ -15,6 +15,12 @@ CASTRAY_INLINE Uint suffix_index(const Context& c, const TileSequence& tile, Uin
   return (item ^ Uint(order)) + Uint(((uint32_t)tile.sample * per_tile) & ((1u << index_bits) - 1));
 }
 
+/// 1 over the expected number of suffixes that start at these pixels of a tile.
+CASTRAY_INLINE Float points_of_suffixes(const Context& c, const Origins& origins, Uint pixel) {
+  const Float mean(stratum_of(c, origins));
+  return origins.even ? mean : mean / gather(origins.share, pixel);
+}
+
 /// Starts the suffixes: one BSDF sample at a random point of each stratum of a tile's origins. `guided`:
 /// their points send rays to caustics, too.
 template <uint32_t features>
@@ -29,10 +35,13 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, bool guid
     const Origins& origins = suffixes.origins[tile];
     for (uint32_t j = 0; j < per_tile; j += width) {
       const Uint item = Uint(j) + lane_index(), suffix = Uint((uint32_t)(tile * tile_pixels)) + item;
-      const Uint in_stratum = ((hash_combine(Uint(choice_key), item + 0x51u) >> 16) * origins.count) >> 16;
-      const Uint rank = (item * origins.count + in_stratum) >> __builtin_ctz(per_tile);
+      const Uint u = hash_combine(Uint(choice_key), item + 0x51u) >> 16;
+      const Uint rank = origins.even
+                            ? (item * origins.count + (u * origins.count >> 16)) >> __builtin_ctz(per_tile)
+                            : point_at(origins, (item << 16) + u);
       const Mask there = item < Uint(per_tile);
       const Uint entry = gather(origins.entry, select(there, rank, Uint(0u)));
+      const Uint pixel = entry - Uint((uint32_t)(tile * tile_pixels));
       const Uint index = suffix_index(c, sequence, item, per_tile);
       const Numbers<4> n = draw<4>(c.options.sobol, {Uint(key), index}, PathBlocks::direction(0));
       const Vec normal = gather_entries(x.normal, entry);
@@ -48,7 +57,8 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, bool guid
         wi = to_world(frame, s.wi);
         weight = select(shading.consistent(wi, s.wi), s.weight, black());
         going = going & shading.consistent(wi, s.wi) & ~(s.pdf <= Float(0.f));
-        if (guided) weight = weight * share_of_suffix(c, origins, gather_entries(x.p, entry), wi, s.pdf);
+        if (guided)
+          weight = weight * share_of_suffix(c, origins, pixel, gather_entries(x.p, entry), wi, s.pdf);
       } else {
         wi = to_world(make_frame(normal), cosine_hemisphere(n.u[0], n.u[1]));
       }
@@ -56,7 +66,7 @@ CASTRAY_STAGE void start_suffixes(const Context& c, const Vertices& x, bool guid
       store(suffixes.origin + first, entry);
       store(suffixes.landed + first, Uint(0u));
       if constexpr (features & feature_materials) store(suffixes.found, first, black());
-      store(suffixes.weight, first, weight * Float(stratum_of(c, origins)));
+      store(suffixes.weight, first, weight * points_of_suffixes(c, origins, pixel));
       compress_store(out.o, k, going, gather_entries(x.p, entry));
       compress_store(out.d, k, going, wi);
       compress_store(out.throughput, k, going, one);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "wavefront/light_points_lanes.h"
+#include "wavefront/origins_lanes.h"
 
 namespace castray::CASTRAY_ISA {
 
@@ -28,7 +29,7 @@ struct Suffixes {
   VecArray<batch_size> found;  ///< emission, or image of the environment, where that ends; 0 without MIS
 };
 
-/// Points per suffix: 1 over the expected number of suffixes that start at one.
+/// Points per suffix: 1 over the expected number of suffixes that start at one, on average.
 CASTRAY_INLINE float stratum_of(const Context& c, const Origins& origins) {
   return (float)origins.count / (float)c.options.suffixes;
 }
