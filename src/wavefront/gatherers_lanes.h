@@ -36,6 +36,11 @@ struct Gatherers {
 /// Whether a tile's points, seen from the camera at once, show more fronts (1) or backs (-1).
 float side_seen(const Vertices& x, int first);
 
+/// The lanes of vector i of a tile, of a bit for each of its pixels.
+CASTRAY_INLINE Mask lanes_of(uint64_t pixels, int i) {
+  return mask_of_bits((uint32_t)(pixels >> (i * width)) & (uint32_t)((1ull << width) - 1));
+}
+
 /// Sum of 64 values, in an order that does not depend on the width: 16 strided sums, which are then added
 /// pairwise.
 CASTRAY_INLINE float ordered_sum(const Float (&value)[tile_vectors]) {

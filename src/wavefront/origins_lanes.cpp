@@ -31,62 +31,81 @@ void order_points(const Vertices& x, int first, bool by_normal, Origins& origins
   for (int i = 0; i < tile_pixels; ++i) origins.entry[begin[cell[i]]++] = (uint32_t)(first + i);
 }
 
-CASTRAY_INLINE Vec normal_at(const Vertices& x, int i) {
-  return {Float(x.normal.x[i]), Float(x.normal.y[i]), Float(x.normal.z[i])};
-}
+/// Points of a tile by orientation.
+struct Orientations {
+  int count = 0;
+  float normal[tile_pixels][3];                ///< of the first point of each
+  int points[tile_pixels];                     ///< number
+  float demand[tile_pixels];                   ///< for suffixes, for each point
+  alignas(64) uint32_t of_pixel[tile_pixels];  ///< `none` where it sees no surface
+  static constexpr uint32_t none = tile_pixels;
+};
 
-/// Whether all points of a tile are on surfaces that lie so nearly alike that all find the same paths.
-CASTRAY_INLINE bool lie_alike(const Vertices& x, int first) {
-  constexpr float near_cosine = 0.8f;
-  const Vec normal = normal_at(x, first);
-  Mask apart(false);
-  for (int i = first; i < first + tile_pixels; i += width)
-    apart = apart | (dot(normal, load(x.normal, i)) < Float(near_cosine));
-  return none(apart);
-}
-
-/// By pixel, 1 / sqrt(n), with n the number of points that lie alike, itself among them: one counts as the
-/// cosine between the normals, to the fourth power. 0 if the pixel sees no surface.
-CASTRAY_INLINE void find_demand(const Vertices& x, int first, float* demand) {
-  Float alike[tile_vectors];
-  for (Float& n : alike) n = Float(0.f);
-  for (int k = first; k < first + tile_pixels; ++k) {
-    const Vec normal = normal_at(x, k);
-    for (int i = 0; i < tile_vectors; ++i) {
-      const Float cosine = max(dot(normal, load(x.normal, first + i * width)), Float(0.f));
-      alike[i] += square(square(cosine));
-    }
+/// A bit for each point of the tile that lies nearly as a normal does.
+CASTRAY_INLINE uint64_t points_along(const Vertices& x, int first, const float (&n)[3]) {
+  constexpr float near_cosine = 0.9f;
+  const Vec normal{Float(n[0]), Float(n[1]), Float(n[2])};
+  uint64_t points = 0;
+  for (int i = 0; i < tile_vectors; ++i) {
+    const Float cosine = dot(normal, load(x.normal, first + i * width));
+    points |= (uint64_t)bits(cosine > Float(near_cosine)) << (i * width);
   }
-  for (int i = 0; i < tile_vectors; ++i)
-    store(demand + i * width,
-          select(alike[i] > Float(0.f), Float(1.f) / sqrt(max(alike[i], Float(0.5f))), Float(0.f)));
+  return points;
 }
 
-/// Suffixes dealt to pixels that see no surface are not traced. Of a tile that sees surfaces in a share h of
-/// its pixels they leave sqrt(h): in all tiles together these have the least error for their suffixes.
-CASTRAY_INLINE void leave_out_others(float* demand) {
+void find_orientations(const Vertices& x, int first, Orientations& o) {
+  uint64_t left = 0;
+  for (int i = 0; i < tile_vectors; ++i) {
+    store(o.of_pixel + i * width, Uint(Orientations::none));
+    left |= (uint64_t)bits(length_squared(load(x.normal, first + i * width)) > Float(0.f)) << (i * width);
+  }
+  for (; left; ++o.count) {
+    const int k = first + __builtin_ctzll(left);
+    float(&normal)[3] = o.normal[o.count];
+    normal[0] = x.normal.x[k], normal[1] = x.normal.y[k], normal[2] = x.normal.z[k];
+    const uint64_t points = left & (points_along(x, first, normal) | 1ull << (k - first));
+    o.points[o.count] = __builtin_popcountll(points);
+    for (int i = 0; i < tile_vectors; ++i) {
+      uint32_t* of_pixel = o.of_pixel + i * width;
+      store(of_pixel, select(lanes_of(points, i), Uint((uint32_t)o.count), load(of_pixel)));
+    }
+    left &= ~points;
+  }
+}
+
+/// 1 / sqrt(n) for points that lie as n do: one counts as the cosine between the normals, to the fourth
+/// power.
+void find_demand(Orientations& o) {
+  for (int g = 0; g < o.count; ++g) {
+    float alike = 0;
+    for (int h = 0; h < o.count; ++h) {
+      const float(&a)[3] = o.normal[g], (&b)[3] = o.normal[h];
+      const float cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2], square = cosine * cosine;
+      if (cosine > 0) alike += (float)o.points[h] * square * square;
+    }
+    o.demand[g] = 1 / __builtin_sqrtf(alike);
+  }
+}
+
+/// Deals out the suffixes by demand. Those dealt to pixels that see no surface are not traced: where the
+/// origins have such, they get so many that to a tile that sees surfaces in a share h of its pixels sqrt(h)
+/// of all are left. So all tiles together have the least error for their suffixes.
+void deal_out(const Orientations& o, int first, uint32_t suffixes, Origins& origins) {
   int seen = 0;
   float total = 0;
-  for (int i = 0; i < tile_pixels; ++i) seen += demand[i] > 0, total += demand[i];
-  if (seen == 0 || seen == tile_pixels) return;
-  const float all = total * __builtin_sqrtf((float)tile_pixels / (float)seen);
-  for (int i = 0; i < tile_pixels; ++i)
-    if (demand[i] == 0) demand[i] = (all - total) / (float)(tile_pixels - seen);
-}
-
-/// Deals out the suffixes by demand.
-CASTRAY_INLINE void deal_out(int first, uint32_t suffixes, const float* demand, Origins& origins) {
+  for (int g = 0; g < o.count; ++g) seen += o.points[g], total += (float)o.points[g] * o.demand[g];
   const uint32_t all = suffixes << 16;
-  float total = 0;
-  for (uint32_t k = 0; k < origins.count; ++k) total += demand[origins.entry[k] - (uint32_t)first];
-  origins.even = total == 0;
-  if (origins.even) return;
-  const float scale = 65535 * (float)suffixes / total;  // rounding leaves some, for the last one
+  const float to_seen = __builtin_sqrtf((float)seen / (float)origins.count);
+  const float scale = 65535 * (float)suffixes / total * to_seen;  // rounding leaves some, for the last one
   const float over_mean = (float)origins.count / (float)all;
+  uint32_t number[tile_pixels + 1];
+  for (int g = 0; g < o.count; ++g) number[g] = (uint32_t)(scale * o.demand[g]);
+  const int others = (int)origins.count - seen;
+  number[o.none] = others > 0 ? (uint32_t)(65535 * (float)suffixes * (1 - to_seen) / (float)others) : 0;
   uint32_t begin = 0;
   for (uint32_t k = 0; k < origins.count; ++k) {
     const uint32_t pixel = origins.entry[k] - (uint32_t)first;
-    origins.end[k] = k + 1 == origins.count ? all : begin + (uint32_t)(scale * demand[pixel]);
+    origins.end[k] = k + 1 == origins.count ? all : begin + number[o.of_pixel[pixel]];
     origins.share[pixel] = (float)(origins.end[k] - begin) * over_mean;
     begin = origins.end[k];
   }
@@ -96,12 +115,12 @@ CASTRAY_INLINE void deal_out(int first, uint32_t suffixes, const float* demand, 
 
 void find_origins(const Vertices& x, int first, bool by_normal, uint32_t suffixes, Origins& origins) {
   order_points(x, first, by_normal, origins);
-  origins.even = lie_alike(x, first);
+  Orientations orientations;
+  find_orientations(x, first, orientations);
+  origins.even = orientations.count == 0 || orientations.points[0] == (int)origins.count;
   if (origins.even) return;
-  alignas(64) float demand[tile_pixels];
-  find_demand(x, first, demand);
-  if (!by_normal) leave_out_others(demand);
-  deal_out(first, suffixes, demand, origins);
+  find_demand(orientations);
+  deal_out(orientations, first, suffixes, origins);
 }
 
 }  // namespace castray::CASTRAY_ISA

@@ -14,8 +14,9 @@
 //
 //     L_j w_ij m / sum_k p_kj,
 //
-// where m is the stratum: pixels per suffix. Light points are shared in the same way. Emission at y_j is
-// found by suffixes and by light points, so MIS weights it.
+// where m is the stratum: pixels per suffix; where not all x_k start as many suffixes, p_kj is times their
+// number over the mean. Light points are shared in the same way. Emission at y_j is found by suffixes and by
+// light points, so MIS weights it.
 //
 // Diffuse and rough y_j are shared. Mirrors and glass are not: there suffixes go on as private paths of
 // their own pixels. Where the camera sees a surface that does not gather (see gathers), x_i is the first

@@ -45,11 +45,6 @@ CASTRAY_INLINE Segment segment_of(const Geometry&, const FarSender& y, const Vec
   return {p, y.w * Float(beyond_scene)};
 }
 
-/// The lanes of vector i of a tile, of a bit for each of its pixels.
-CASTRAY_INLINE Mask lanes_of(uint64_t pixels, int i) {
-  return mask_of_bits((uint32_t)(pixels >> (i * width)) & (uint32_t)((1ull << width) - 1));
-}
-
 /// Scales what pixels get by what the n shadow rays traced leave of it. The `own` pixel is known not to be
 /// occluded.
 CASTRAY_INLINE void thin(const VisibilityScratch& s, int n, int own, bool weights, Transfer& t) {
