@@ -11,7 +11,7 @@ using namespace castray::test;
 TEST_CASE("an image with few suffixes by a pilot is that of as many given, and its film tells them") {
   const Scene floor = standard_scene("kinds/glossy_floor");
   RenderOptions options;
-  options.width = options.height = 64;
+  options.width = options.height = 96;
   options.spp = 1;
   RenderOptions few = options;
   few.reuse = {.automatic = false, .width = 8, .height = 8, .suffixes = 32};
