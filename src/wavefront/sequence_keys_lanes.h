@@ -26,11 +26,16 @@ CASTRAY_INLINE uint64_t sample_of(const Context& c, const TilePlace& place) {
   return c.job.sample * place.repeats + place.repeat;
 }
 
-/// The key of such a sequence, of a pixel or a tile. Samples in which the tile is repeated have another.
-CASTRAY_INLINE Uint key_in(const Context& c, const TilePlace& place, Uint key) {
+/// The key of such a sequence, of a pixel or a tile, each sample of which takes `items` of its points.
+/// Samples in which the tile is repeated have another.
+CASTRAY_INLINE Uint key_in(const Context& c, const TilePlace& place, Uint key, uint32_t items = 1) {
   const Uint own = place.repeats > 1 ? hash_combine(key, Uint(0x2e9ea7u)) : key;
-  return with_epoch(own, sample_of(c, place));
+  return with_epoch(own, sample_of(c, place) * items);
 }
+
+/// Items of one kind that the pixels of a tile share in a sample, at most: a sequence ends before these would
+/// take its points a second time.
+constexpr uint32_t most_items = tile_pixels;
 
 /// Which numbers a tile's shared items take: those of a sample under a key.
 struct TileSequence {
@@ -41,7 +46,7 @@ CASTRAY_INLINE TileSequence tile_sequence(const Context& c, int tile) {
   const TilePlace place = place_of(c.job, tile);
   const uint32_t key = hash_once(hash_once(hash_once(c.options.seed, 0x7411u), (uint32_t)place.grid_x),
                                  (uint32_t)place.grid_y);
-  return {lane(key_in(c, place, Uint(key)), 0), sample_of(c, place)};
+  return {lane(key_in(c, place, Uint(key), most_items), 0), sample_of(c, place)};
 }
 
 /// The world of a sample (see PartialTriangles), one for all its pixels: in one world all visibilities are
