@@ -17,13 +17,14 @@ CASTRAY_INLINE Vec broadcast_lane(const Vec& v, int l) {
   return {Float(lane(v.x, l)), Float(lane(v.y, l)), Float(lane(v.z, l))};
 }
 
-/// A bit for each of the `count` light points: one pixel, tried by a ray, sees it.
+/// A bit for each of the `count` light points from `first` on: one pixel, tried by a ray, sees it. Which one
+/// does not depend on how many points are tried at once.
 template <class Geometry>
-CASTRAY_INLINE uint32_t seen_points(Context& c, const Gatherers& tile, const LightPoint& point, int count,
-                                    VisibilityScratch& s) {
+CASTRAY_INLINE uint32_t seen_points(Context& c, const Gatherers& tile, const LightPoint& point, int first,
+                                    int count, VisibilityScratch& s) {
   const Geometry geometry = geometry_of<Geometry>(c);
-  const Uint pixel =
-      Uint((uint32_t)tile.first) + (lane_index() * Uint(tile_pixels / 16) & Uint(tile_pixels - 1));
+  const Uint number = Uint((uint32_t)first) + lane_index();
+  const Uint pixel = Uint((uint32_t)tile.first) + (number * Uint(tile_pixels / 16) & Uint(tile_pixels - 1));
   const Vec p = gather_entries(tile.x.p, pixel), normal = gather_entries(tile.x.normal, pixel);
   store(s.o, 0, point.p);
   store(s.d, 0, geometry.far_end(p, normal, point.p) - point.p);
@@ -52,7 +53,7 @@ CASTRAY_STAGE void gather_light(Context& c, const Vertices& x, const TileBoxes* 
       const LightPoint point = tile_light_points(c, receiver, lights[tile], sequence, first);
       const int count = points - first < width ? points - first : width;
       const uint32_t seen =
-          gatherers.boxes.facing != 0 ? seen_points<Geometry>(c, gatherers, point, count, s) : 0;
+          gatherers.boxes.facing != 0 ? seen_points<Geometry>(c, gatherers, point, first, count, s) : 0;
       for (int l = 0; l < count; ++l) {
         Transfer t;
         transfer<Geometry, features>(
