@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
 #include "castray/render.h"
-#include "reference_images.h"
 #include "statistics.h"
+#include "test_scenes.h"
 
 using namespace castray;
 using namespace castray::test;

@@ -2,7 +2,6 @@
 
 #include <catch2/catch.hpp>
 
-#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -63,25 +62,12 @@ void check_unbiased(const std::string& name, const Corrections& corrections) {
   const BlockScores scores = block_scores(corrections.blocks, nothing, nothing);
   CAPTURE(name, scores.rms, scores.largest, corrections.relative.mean(), corrections.relative.error());
   CHECK(scores.largest < score_limit(scores.count, 1e-5));
-  CHECK(scores.rms < 1.25);
+  CHECK(scores.rms < rms_limit(scores));
   CHECK(std::abs(corrections.relative.mean()) <= 4.5 * corrections.relative.error());
 }
 
-/// The rms score over several scenes: of one, whose 64 blocks are not independent, it is above 1.25 in 1 of
-/// 12 sets of 64 seeds.
-class RmsOfScenes {
- public:
-  void add(const BlockScores& scores) { squares_ += scores.rms * scores.rms, ++scenes_; }
-  double value() const { return std::sqrt(squares_ / scenes_); }
-
- private:
-  double squares_ = 0;
-  int scenes_ = 0;
-};
-
 /// Blocks of films that keep differences, as `options` says, and of others with other seeds.
-BlockScores check_same_mean(const char* name, const Scene& scene, std::uint64_t seeds,
-                            RenderOptions options) {
+void check_same_mean(const char* name, const Scene& scene, std::uint64_t seeds, RenderOptions options) {
   options.width = options.height = 32;
   RenderOptions plain_options = options;
   plain_options.seed += 1000;
@@ -94,9 +80,9 @@ BlockScores check_same_mean(const char* name, const Scene& scene, std::uint64_t 
   }
   const ExpectedBlocks expected(plain);
   const BlockScores scores = block_scores(more, expected.mean, expected.variance);
-  CAPTURE(name, scores.rms, scores.largest);
+  CAPTURE(name, scores.rms, scores.largest, scores.independent);
   CHECK(scores.largest < score_limit(scores.count, 1e-5));
-  return scores;
+  CHECK(scores.rms < rms_limit(scores));
 }
 
 }  // namespace
@@ -117,19 +103,15 @@ TEST_CASE("reconstructed images have the mean of their samples in every block", 
 }
 
 TEST_CASE("outlines of lamps, seen by more rays, have the mean of all samples", "[statistical]") {
-  RmsOfScenes rms;
   for (const char* name : {"cornell_box", "cornell_lights", "kinds/glowing_meshes", "kinds/sky_and_ground"})
-    rms.add(check_same_mean(name, standard_scene(name), 64, options_of(2, 3000)));
-  CHECK(rms.value() < 1.25);
+    check_same_mean(name, standard_scene(name), 64, options_of(2, 3000));
 }
 
 TEST_CASE("places at edges, sampled more often, have the mean of all samples", "[statistical]") {
   RenderOptions options = options_of(3, 5000);
   options.edge_samples = 4;
-  RmsOfScenes rms;
-  rms.add(check_same_mean("mirrors", standard_scene("kinds/facing_mirrors"), 40, options));
-  rms.add(check_same_mean("coverage", box_with([](Material& m) { m.coverage = 0.6; }), 40, options));
-  CHECK(rms.value() < 1.25);
+  check_same_mean("mirrors", standard_scene("kinds/facing_mirrors"), 40, options);
+  check_same_mean("coverage", box_with([](Material& m) { m.coverage = 0.6; }), 40, options);
 }
 
 TEST_CASE("many seeds show no bias of reconstructed images, in any scene", "[statistical][long]") {

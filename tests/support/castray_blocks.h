@@ -40,14 +40,13 @@ struct Expected : ExpectedBlocks {
                     std::uint64_t seeds = 24)
       : ExpectedBlocks(blocks_of(scene, as_reference(options), seeds)) {}
 
-  /// No block is off, at a false-alarm rate of 1e-4 a call, nor are all of them a little: 192 scores, of
-  /// which the root mean square has a standard error of 0.05.
+  /// No block is off, at a false-alarm rate of 1e-4 a call, nor are all of them a little, at another one.
   void check(const std::string& what, const Scene& scene, const RenderOptions& options,
              std::uint64_t seeds = 24) const {
     const BlockScores scores = block_scores(blocks_of(scene, options, seeds), mean, variance);
-    CAPTURE(what, scores.rms, scores.largest);
+    CAPTURE(what, scores.rms, scores.largest, scores.independent);
     CHECK(scores.largest < score_limit(scores.count, 1e-4));
-    CHECK(scores.rms < 1.25);
+    CHECK(scores.rms < rms_limit(scores));
   }
 
   /// The wavefront with other options.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -49,6 +52,7 @@ inline std::vector<double> block_means(const Image& image, int size) {
 struct BlockScores {
   double largest = 0, rms = 0;
   std::size_t count = 0;
+  double independent = 0;  ///< as many independent scores would have so uncertain a mean square
 };
 
 /// Block by block, the mean of some renders and the variance of that mean.
@@ -65,6 +69,21 @@ struct ExpectedBlocks {
   }
 };
 
+/// Of `count` normal scores with correlations rho, the mean square has the variance 2 sum(rho^2) / count^2,
+/// as that of count^2 / sum(rho^2) independent ones. `unit`: by score, its deviations over the renders, as a
+/// vector of length 1. Where rho is 0 its estimate squared is 1 / degrees on average, which is taken off.
+inline double independent_scores(const std::vector<std::vector<double>>& unit, double degrees) {
+  const auto count = static_cast<double>(unit.size());
+  double squares = 0;
+  for (const auto& a : unit)
+    for (const auto& b : unit) {
+      const double rho = std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+      squares += rho * rho;
+    }
+  const double corrected = (squares - count * count / degrees) / (1 - 1 / degrees);
+  return count * count / std::max(corrected, count);
+}
+
 /// `variance`: of `expected` itself. A score follows Student's t; it is turned into a normal one of the same
 /// probability (Wallace 1959). Blocks without any variance are left out.
 inline BlockScores block_scores(const std::vector<std::vector<double>>& renders,
@@ -72,6 +91,7 @@ inline BlockScores block_scores(const std::vector<std::vector<double>>& renders,
   constexpr double rounding = 4e-6;  // of sums of floats, which is all that skies differ by
   BlockScores scores;
   const auto degrees = static_cast<double>(renders.size() - 1);
+  std::vector<std::vector<double>> unit;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     Mean mean;
     for (const auto& render : renders) mean.add(render[i]);
@@ -83,9 +103,22 @@ inline BlockScores block_scores(const std::vector<std::vector<double>>& renders,
     scores.largest = std::max(scores.largest, z);
     scores.rms += z * z;
     ++scores.count;
+    if (!(mean.variance() > 0)) continue;
+    std::vector<double>& deviations = unit.emplace_back();
+    for (const auto& render : renders)
+      deviations.push_back((render[i] - mean.mean()) / std::sqrt(mean.variance() * degrees));
   }
+  scores.independent = independent_scores(unit, degrees);
   scores.rms = std::sqrt(scores.rms / static_cast<double>(std::max<std::size_t>(scores.count, 1)));
   return scores;
+}
+
+/// 1.25; or, where blocks are so alike that chance exceeds it more often than 1 in 10,000 times, what it
+/// exceeds so often, by the distribution of chi^2 (Wilson and Hilferty 1931).
+inline double rms_limit(const BlockScores& scores) {
+  constexpr double quantile = 3.72, always_allowed = 1.25;
+  const double part = 2 / (9 * std::max(scores.independent, 1.0));
+  return std::max(always_allowed, std::pow(1 - part + quantile * std::sqrt(part), 1.5));
 }
 
 /// The |z| that the largest of `count` scores exceeds with probability `false_alarm`.
