@@ -191,8 +191,13 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain) {
 void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few, bool by_single_samples) {
   constexpr double enough = 1.5;
   // A wrong choice of few suffixes costs little, and plain paths have bright samples that are rarer than
-  // pilots meet.
-  const double least = few && !by_single_samples ? 1 / std::min(error, enough) : std::min(error, enough);
+  // pilots meet. But where caustics by chance are very bright, one that a suffix meets behind glass shows as
+  // a bright square.
+  constexpr double very_bright = 200;
+  const double in_doubt = std::min(error, enough);
+  const double least = !few || by_single_samples                 ? in_doubt
+                       : plan.gain_of_light_paths >= very_bright ? enough
+                                                                 : 1 / in_doubt;
   if (gain_of_sharing < least)
     plan.suffixes = 0;
   else if (few)

@@ -74,8 +74,8 @@ void choose_reconstruction(Plan& plan, std::optional<double> gain);
 
 /// Takes shared paths if these are that many times as efficient as plain ones and it is more than the
 /// standard error, a factor, or than 1.5. `few`: that is with few suffixes, which are taken unless plain
-/// paths are better by as much, or all is known from single samples alone. Says so in Plan::kernel. After
-/// choose_caustics.
+/// paths are better by as much, or all is known from single samples alone, or paths from lights do 200 times
+/// better than chance, where a gain of 1.5 is needed. Says so in Plan::kernel. After choose_caustics.
 void choose_by_pilot(Plan& plan, double gain_of_sharing, double error, bool few = false,
                      bool by_single_samples = false);
 

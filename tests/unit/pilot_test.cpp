@@ -108,12 +108,19 @@ TEST_CASE("paths are shared if that does better by more than its error, or by mu
   }
 }
 
-TEST_CASE("few suffixes are shared in doubt") {
-  for (const auto& [gain, error, suffixes] :
-       {std::tuple{1.1, 1.4, 32}, {0.9, 1.2, 32}, {0.9, 1.0, 0}, {0.8, 1.2, 0}, {0.6, 3.0, 0}}) {
+TEST_CASE("few suffixes are shared in doubt, but for where one may meet a very bright caustic") {
+  for (const auto& [gain, error, light_paths, suffixes] : {std::tuple{1.1, 1.4, 0.0, 32},
+                                                           {1.1, 1.4, 100.0, 32},
+                                                           {0.9, 1.2, 0.0, 32},
+                                                           {0.9, 1.0, 0.0, 0},
+                                                           {0.8, 1.2, 0.0, 0},
+                                                           {0.6, 3.0, 0.0, 0},
+                                                           {1.4, 1.0, 300.0, 0},
+                                                           {1.6, 3.0, 300.0, 32}}) {
     Plan plan;
     plan.suffixes = 64;
     plan.few_suffixes = 32;
+    plan.gain_of_light_paths = light_paths;
     choose_by_pilot(plan, gain, error, true);
     CHECK(plan.suffixes == suffixes);
   }
