@@ -7,6 +7,19 @@
 
 namespace castray {
 
+namespace {
+
+/// The first samples, whose tiles would be seen: from then on so many grids lie over each other that none can
+/// be told. But of what few suffixes meet behind glass single samples are so bright that they show in any
+/// sample, as squares where tiles have straight edges.
+std::uint64_t ragged_samples(const Plan& plan, bool differences) {
+  constexpr std::uint64_t first = 4, all = std::numeric_limits<std::uint64_t>::max();
+  if (differences) return first / DifferenceSums::halves;
+  return plan.light_paths && plan.suffixes == plan.few_suffixes ? all : first;
+}
+
+}  // namespace
+
 bool traces_light_paths(const RenderOptions& options, const Plan& plan) {
   // splats are spread over their pixels, and no sample's part to clamp
   return plan.light_paths && options.jitter && !options.clamp_indirect;
@@ -28,9 +41,7 @@ KernelOptions kernel_options(const RenderOptions& options, const Plan& plan, boo
   k.branches = plan.branches;
   k.light_points = plan.light_points;
   k.environment_points = plan.environment_points;
-  // from then on so many grids lie over each other that none can be told
-  constexpr std::uint64_t few_samples = 4;
-  k.ragged = plan.suffixes > 0 ? few_samples / (differences ? DifferenceSums::halves : 1) : 0;
+  k.ragged = plan.suffixes > 0 ? ragged_samples(plan, differences) : 0;
   k.seed =
       hash_combine(static_cast<std::uint32_t>(options.seed), static_cast<std::uint32_t>(options.seed >> 32));
   return k;
