@@ -1,6 +1,7 @@
 #include "image/screened_poisson.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -229,8 +230,9 @@ void go_further(Level& level, int y, Band& band, float further, bool from_zero) 
   }
 }
 
-/// Takes the corrections, so far as `further` tells, out of b.
-void take_out(Level& level, int y, Band& band, float further) {
+/// `work(product, b, c, i)` has what the equations make of line i of a channel's values, and the line of b.
+template <class Work>
+void apply_row(Level& level, int y, Band& band, RecentRows& values, Work work) {
   const RowEquations a(level, y);
   float* b[3];
   for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y);
@@ -239,37 +241,38 @@ void take_out(Level& level, int y, Band& band, float further) {
     Line screen;
     load(a.screen + i, screen);
     for (int c = 0; c < 3; ++c) {
-      Line right_side, product;
-      load(b[c] + i, right_side);
-      LinesAround(band.correction, c, y, i).apply(couplings, screen, product);
-      store(right_side - further * product, b[c] + i);
+      Line product;
+      LinesAround(values, c, y, i).apply(couplings, screen, product);
+      work(product, b[c] + i, c, i);
     }
   }
 }
 
+/// Takes the corrections, so far as `further` tells, out of b.
+void take_out(Level& level, int y, Band& band, float further) {
+  apply_row(level, y, band, band.correction, [further](const Line& product, float* b, int, int) {
+    Line right_side;
+    load(b, right_side);
+    store(right_side - further * product, b);
+  });
+}
+
 /// The sums of what is left over blocks of 2x2 become the coarser grid's b, after the second row of each.
 void restrict_row(Level& level, int y, Band& band, Level& coarse) {
-  const RowEquations a(level, y);
-  const float* b[3];
-  for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y);
-  for (int i = 0; i < a.end; i += PixelPlane::line) {
-    const LineCouplings couplings(a, i);
-    Line screen;
-    load(a.screen + i, screen);
-    for (int c = 0; c < 3; ++c) {
-      Line sum{}, right_side, product;
-      float* const residual = band.residual.row(c) + i;
-      if (y % 2 == 1) load(residual, sum);
-      load(b[c] + i, right_side);
-      LinesAround(band.prepared, c, y, i).apply(couplings, screen, product);
-      store(sum + (right_side - product), residual);
-    }
-  }
+  const std::array<float*, 3> residuals{band.residual.row(0), band.residual.row(1), band.residual.row(2)};
+  const bool second = y % 2 == 1;
+  apply_row(level, y, band, band.prepared, [=](const Line& product, const float* b, int c, int i) {
+    Line sum{}, right_side;
+    float* const residual = residuals[static_cast<std::size_t>(c)] + i;
+    if (second) load(residual, sum);
+    load(b, right_side);
+    store(sum + (right_side - product), residual);
+  });
   if (y % 2 == 0 && y + 1 < level.a.height) return;
   for (int c = 0; c < 3; ++c) {
     const float* residual = band.residual.row(c);
     float* __restrict sums = coarse.b[static_cast<std::size_t>(c)].row(y / 2);
-    for (int i = 0; i < a.end / 2; ++i) sums[i] = residual[2 * i] + residual[2 * i + 1];
+    for (int i = 0; i < end_of(level.a.width) / 2; ++i) sums[i] = residual[2 * i] + residual[2 * i + 1];
   }
 }
 

@@ -2,7 +2,10 @@
 
 #include <catch2/catch.hpp>
 
+#include "guide_bins.h"
+
 using namespace castray;
+using namespace castray::test;
 
 namespace {
 
@@ -11,15 +14,7 @@ std::vector<double> probabilities(const ArrivalGuideTable& table, const Vec3f& p
   const RegionNode* node = table.tree;
   while ((node->link & 3) != region_leaf)
     node = table.tree + (node->link >> 2) + (p[static_cast<int>(node->link & 3)] >= node->plane ? 1 : 0);
-  const float* row = table.cumulative + std::size_t{node->link >> 2} * (guide_bins + 1);
-  CHECK(row[0] == 0);
-  CHECK(row[guide_bins] == 1);
-  std::vector<double> bins;
-  for (std::size_t i = 0; i < guide_bins; ++i) {
-    CHECK(row[i + 1] >= row[i]);
-    bins.push_back(double{row[i + 1]} - double{row[i]});
-  }
-  return bins;
+  return probabilities_of(table.cumulative + std::size_t{node->link >> 2} * (guide_bins + 1));
 }
 
 /// Light along the middle of a square of the face +y of a cube.
@@ -28,10 +23,7 @@ struct Arriving {
   std::size_t bin;
 };
 Arriving along(std::size_t a, std::size_t b) {
-  const auto middle = [](std::size_t step) {
-    return (static_cast<float>(step) + 0.5f) * 2 / guide_steps - 1;
-  };
-  return {normalize(Vec3f(middle(b), 1, middle(a))), (2 * guide_steps + a) * guide_steps + b};
+  return {normalize(Vec3f(middle_of_step(b), 1, middle_of_step(a))), guide_bin(2, a, b)};
 }
 
 /// `count` samples around a place, of one direction.
