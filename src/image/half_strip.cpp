@@ -65,6 +65,11 @@ void write_pairs(int number, const Pairs& of, float* __restrict weight) {
   }
 }
 
+CASTRAY_VECTOR_CLONES
+void round_weights(int number, const float* weights, Coupling* __restrict rounded) {
+  for (int x = 0; x < number; ++x) rounded[x] = weights[x];
+}
+
 }  // namespace
 
 HalfStrip::Neighbourhood::Neighbourhood(int width) {
@@ -135,7 +140,8 @@ HalfStrip::HalfStrip(const DifferenceSums& sums, int half)
       blocks_(w_),
       screen_(static_cast<std::size_t>(w_)),
       least_(screen_),
-      known_(screen_) {
+      known_(screen_),
+      weights_(screen_) {
   for (PixelPlanes* planes : {&right_contradictions_, &below_contradictions_})
     for (PixelPlane& plane : *planes) plane = PixelPlane(w_, rows);
 }
@@ -201,14 +207,16 @@ void HalfStrip::find_blocks(int y0) {
 void HalfStrip::write_weights(int y, int other_half, PixelCouplings& weights) {
   const std::uint32_t* count = sums_.counts(half_, y, Term::own);
   write_screen(w_, screen_.data(), count, known_.data());
-  write_screen(w_, known_.data(), sums_.counts(other_half, y, Term::own), weights.screen.row(y));
-  const auto write = [&](Term term, const PixelPlane& differences, int number, float* weight) {
+  write_screen(w_, known_.data(), sums_.counts(other_half, y, Term::own), weights_.data());
+  round_weights(w_, weights_.data(), weights.screen.row(y));
+  const auto write = [&](Term term, const PixelPlane& differences, int number, Coupling* rounded) {
     around_.add_up(*this, differences, y, term);
     write_pairs(
         number,
         {around_.sums[0].data(), around_.sums[1].data(), around_.sums[2].data(), differences.row(y - begin_),
          least_.data(), known_.data(), sums_.counts(half_, y, term), sums_.counts(other_half, y, term)},
-        weight);
+        weights_.data());
+    round_weights(number, weights_.data(), rounded);
   };
   write(Term::right, right_, w_ - 1, weights.right.row(y));
   if (y + 1 < h_) write(Term::below, below_, w_, weights.below.row(y));

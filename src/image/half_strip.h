@@ -73,6 +73,7 @@ class HalfStrip {
   BlockSums blocks_;
   /// Of the pixels of a row: the weight of a mean, and what has the weight of no difference less variance.
   std::vector<float> screen_, least_, known_;
+  std::vector<float> weights_;  ///< of a row, not yet rounded
 };
 
 }  // namespace castray

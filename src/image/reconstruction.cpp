@@ -43,7 +43,7 @@ class RightSide {
   using Rows = std::array<std::vector<float>, 3>;
 
   CASTRAY_VECTOR_CLONES
-  static void weigh(const float* contradiction, const float* weight, int count, float* __restrict pull) {
+  static void weigh(const float* contradiction, const Coupling* weight, int count, float* __restrict pull) {
     for (int x = 0; x < count; ++x) pull[x] = weight[x] > 0 ? weight[x] * contradiction[x] : 0;
   }
 
@@ -148,9 +148,11 @@ std::uint64_t bytes_of_image(const Film& like, int width, int height, int thread
   if (like.differences().kept()) {
     const int strips = (height + HalfStrip::rows - 1) / HalfStrip::rows;
     constexpr int planes_of_a_half = 6 * (HalfStrip::rows + 2) + 3 * (HalfStrip::rows + 3),
-                  vectors_of_a_half = 2 * 3 * (3 + 1) + 6 + 4 + 3, rows_of_right_side = 9;
-    making = (3 + 3) * PixelPlane::bytes_of(width, height) +  // the equations of the other half
-             bytes_to_solve(width, height, threads) + 6 * PixelPlane::bytes_of(width, strips) +
+                  vectors_of_a_half = 2 * 3 * (3 + 1) + 6 + 4 + 4, rows_of_right_side = 9;
+    making = 3 * (CouplingPlane::bytes_of(width, height) +
+                  PixelPlane::bytes_of(width, height)) +  // the equations of the other half
+             bytes_to_solve(width, height, threads) +
+             6 * PixelPlane::bytes_of(width, strips) +
              static_cast<std::uint64_t>(threads) *
                  PixelPlane::bytes_of(width, 2 * (planes_of_a_half + vectors_of_a_half) + rows_of_right_side);
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -35,12 +34,11 @@ int threads_for(int width, int height, int threads) { return width * height >= w
 /// One grid of the hierarchy. Each coarser one has a pixel for every 2x2 (Brandt 1977).
 struct Level {
   PixelCouplings a;
-  PixelPlane inverse_diagonal;
   PixelPlanes b, x;                 ///< what is left of b when x is taken out of it, and x
   std::vector<PixelPlane> outside;  ///< b of the rows around each thread's, as others change theirs
 
   /// `finest`: a and b are still to come.
-  Level(int width, int height, int threads, bool finest) : inverse_diagonal(width, height) {
+  Level(int width, int height, int threads, bool finest) {
     for (PixelPlane& plane : x) plane = PixelPlane(width, height);
     for (int i = 0; i < threads; ++i) outside.emplace_back(width, 2 * 3 * rows_outside);
     if (finest) return;
@@ -65,28 +63,42 @@ void load(const float* from, Vector& values) {
   std::memcpy(&values, from, sizeof values);
 }
 
+void load(const Coupling* from, Line& values) {
+  static_assert(sizeof(Coupling) == sizeof(std::uint16_t));
+  using UpperHalves [[gnu::vector_size(PixelPlane::line * sizeof(std::uint16_t))]] = std::uint16_t;
+  using Bits [[gnu::vector_size(sizeof(Line))]] = std::uint32_t;
+  UpperHalves upper_halves;
+  std::memcpy(&upper_halves, from, sizeof upper_halves);
+  const Bits bits = __builtin_convertvector(upper_halves, Bits) << 16;
+  std::memcpy(&values, &bits, sizeof values);
+}
+
 template <class Vector>
 void store(const Vector& values, float* to) {
   std::memcpy(to, &values, sizeof values);
 }
 
-/// Three channels of the last rows of a step, in the cache of a thread.
-class RecentRows {
+/// The last rows of a step, in the cache of a thread. `kept`: how many, a power of 2.
+template <int channels, int kept>
+class LastRows {
  public:
-  explicit RecentRows(int width) : plane_(width, 3 * kept) {}
+  explicit LastRows(int width) : plane_(width, number) {}
   float* row(int c, int y) { return plane_.row(c * kept + (y & (kept - 1))); }
 
-  static constexpr int kept = 4;  ///< three to read around one, and one to write; a power of 2
+  static constexpr int number = channels * kept;
 
  private:
   PixelPlane plane_;
 };
+using RecentRows = LastRows<3, 4>;   ///< three to read around one, and one to write
+using InverseRows = LastRows<1, 8>;  ///< from the first step of a sweep to the last
 
 /// What a thread that works on the rows begin <= y < end has of its own.
 struct Band {
   int begin = 0, end = 0;
   RecentRows started, relaxed, improved, correction;  ///< of a cycle
   RecentRows restarted, prepared;                     ///< of the next one, before its coarser grids
+  InverseRows inverse_diagonal;                       ///< found anew by each sweep: sooner than it is read
   PixelPlane residual;                                ///< of three channels
   PixelPlane* outside = nullptr;                      ///< that of the grid
 
@@ -97,6 +109,7 @@ struct Band {
         correction(width),
         restarted(width),
         prepared(width),
+        inverse_diagonal(width),
         residual(width, 3) {}
 
   bool has(int y) const { return y >= begin && y < end; }
@@ -110,15 +123,14 @@ struct Band {
 /// What the equations of a row say of its values and of those around.
 struct RowEquations {
   int end;
-  const float *screen, *right, *below, *above, *inverse_diagonal;
+  const Coupling *screen, *right, *below, *above;
 
   RowEquations(const Level& level, int y)
       : end(end_of(level.a.width)),
         screen(level.a.screen.row(y)),
         right(level.a.right.row(y)),
         below(level.a.below.row(y)),
-        above(level.a.below.row(y - 1)),
-        inverse_diagonal(level.inverse_diagonal.row(y)) {}
+        above(level.a.below.row(y - 1)) {}
 };
 
 /// The couplings of a line's pixels to those around.
@@ -158,14 +170,26 @@ struct LinesAround {
   }
 };
 
+void invert_diagonal(const Level& level, int y, Band& band) {
+  const RowEquations a(level, y);
+  float* inverse = band.inverse_diagonal.row(0, y);
+  for (int i = 0; i < a.end; i += PixelPlane::line) {
+    const LineCouplings couplings(a, i);
+    Line screen;
+    load(a.screen + i, screen);
+    const Line diagonal = screen + couplings.right + couplings.left + couplings.below + couplings.above;
+    store(diagonal > 0 ? 1 / diagonal : Line{}, inverse + i);
+  }
+}
+
 /// A damped Jacobi step from zero.
 void start_row(Level& level, int y, Band& band, RecentRows& to) {
-  const RowEquations a(level, y);
+  const float* inverse_diagonal = band.inverse_diagonal.row(0, y);
   float *b[3], *next[3];
   for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y), next[c] = to.row(c, y);
-  for (int i = 0; i < a.end; i += PixelPlane::line) {
+  for (int i = 0; i < end_of(level.a.width); i += PixelPlane::line) {
     Line factor;
-    load(a.inverse_diagonal + i, factor);
+    load(inverse_diagonal + i, factor);
     factor *= first_step;
     for (int c = 0; c < 3; ++c) {
       Line value;
@@ -179,12 +203,12 @@ void start_row(Level& level, int y, Band& band, RecentRows& to) {
 template <class Write>
 void relax_row(Level& level, int y, Band& band, float step, RecentRows& from, Write write) {
   const RowEquations a(level, y);
-  const float* b[3];
+  const float *b[3], *inverse = band.inverse_diagonal.row(0, y);
   for (int c = 0; c < 3; ++c) b[c] = band.b(level, c, y);
   for (int i = 0; i < a.end; i += PixelPlane::line) {
     const LineCouplings couplings(a, i);
     Line inverse_diagonal;
-    load(a.inverse_diagonal + i, inverse_diagonal);
+    load(inverse + i, inverse_diagonal);
     for (int c = 0; c < 3; ++c) {
       Line right_side, next;
       load(b[c] + i, right_side);
@@ -313,8 +337,11 @@ void keep_outside(Level& level, Band& band) {
 CASTRAY_VECTOR_CLONES
 void sweep_down(Level& level, Band& band, Level& coarse) {
   keep_outside(level, band);
-  for (int row = band.begin - 2; row < band.end + 2; ++row)
-    prepare({band.begin - 2, row}, 0, level, band, coarse);
+  for (int row = band.begin - 2; row < band.end + 2; ++row) {
+    const Place place{band.begin - 2, row};
+    place.step(0, level, nullptr, [&](int y) { invert_diagonal(level, y, band); });
+    prepare(place, 0, level, band, coarse);
+  }
 }
 
 /// The second half of a cycle: corrections of coarser grids, and two Jacobi steps. `further`: how far x goes
@@ -325,6 +352,7 @@ void sweep_up(Level& level, Band& band, float further, bool from_zero, int more,
   const int outside = rows_of_last_cycle + more * rows_of_a_cycle;
   for (int row = band.begin - outside; row < band.end + outside; ++row) {
     const Place place{band.begin - outside, row};
+    place.step(0, level, nullptr, [&](int y) { invert_diagonal(level, y, band); });
     place.step(0, level, &band.started, [&](int y) { start_row(level, y, band, band.started); });
     place.step(1, level, &band.relaxed,
                [&](int y) { relax_row(level, y, band, second_step, band.started, coarse, band.relaxed); });
@@ -340,35 +368,26 @@ void sweep_up(Level& level, Band& band, float further, bool from_zero, int more,
   }
 }
 
-CASTRAY_VECTOR_CLONES
-void invert(const PixelCouplings& a, int y, float* __restrict inverse) {
-  const float *screen = a.screen.row(y), *right = a.right.row(y), *below = a.below.row(y),
-              *above = a.below.row(y - 1);
-  constexpr float none = std::numeric_limits<float>::infinity();  // a quotient of 0, without a branch
-  for (int x = 0; x < end_of(a.width); ++x) {
-    const float diagonal = screen[x] + right[x] + right[x - 1] + below[x] + above[x];
-    inverse[x] = 1 / (diagonal > 0 ? diagonal : none);
-  }
-}
-
-/// Adds values, one after the other, to those of a coarser row.
-void add_both(const float* values, int width, float* __restrict sums) {
-  const int pairs = end_of(width) / 2;
+/// Adds values, two of them one after the other, to those of a coarser row.
+void add_both(const Coupling* values, int pairs, float* __restrict sums) {
   for (int i = 0; i < pairs; ++i) sums[i] = (sums[i] + values[2 * i]) + values[2 * i + 1];
 }
 
 /// Galerkin's coarse coupling is the sum of the fine ones that cross the border of two blocks: with it a
-/// cycle lessens every error, whatever the couplings. Row y of the coarser grid.
+/// cycle lessens every error, whatever the couplings. Row y of the coarser grid. `sums`: three rows.
 CASTRAY_VECTOR_CLONES
-void couple_coarse(const PixelCouplings& fine, int y, PixelCouplings& coarse) {
-  float *screen = coarse.screen.row(y), *to_right = coarse.right.row(y), *to_below = coarse.below.row(y);
+void couple_coarse(const PixelCouplings& fine, int y, PixelPlane& sums, PixelCouplings& coarse) {
+  float *screen = sums.row(0), *to_right = sums.row(1), *to_below = sums.row(2);
   for (float* row : {screen, to_right, to_below}) std::fill_n(row, coarse.width, 0.f);
   for (int row = 2 * y; row < std::min(2 * y + 2, fine.height); ++row) {
-    const float* right = fine.right.row(row) + 1;
-    add_both(fine.screen.row(row), fine.width, screen);
+    const Coupling* right = fine.right.row(row) + 1;
+    add_both(fine.screen.row(row), coarse.width, screen);
     for (int x = 0; x + 1 < coarse.width; ++x) to_right[x] += right[2 * x];
-    if (row % 2 == 1 && row + 1 < fine.height) add_both(fine.below.row(row), fine.width, to_below);
+    if (row % 2 == 1 && row + 1 < fine.height) add_both(fine.below.row(row), coarse.width, to_below);
   }
+  std::copy_n(screen, coarse.width, coarse.screen.row(y));
+  std::copy_n(to_right, coarse.width, coarse.right.row(y));
+  std::copy_n(to_below, coarse.width, coarse.below.row(y));
 }
 
 }  // namespace
@@ -388,10 +407,7 @@ class ScreenedPoisson::Multigrid {
     if (finest.x[0].values.empty()) finest.x = std::move(finest.b);  // the last solution has taken x with it
     finest.a = std::move(equations.a);
     finest.b = std::move(equations.b);
-    for (std::size_t i = 0; i < levels_.size(); ++i) {
-      if (i > 0) couple(levels_[i - 1].a, levels_[i].a);
-      invert_diagonal(levels_[i]);
-    }
+    for (std::size_t i = 1; i < levels_.size(); ++i) couple(levels_[i - 1], levels_[i]);
     cycles(0);
     return std::move(finest.x);
   }
@@ -415,14 +431,10 @@ class ScreenedPoisson::Multigrid {
     }
   }
 
-  void invert_diagonal(Level& level) const {
-#pragma omp parallel for schedule(static) num_threads(threads_for(level.a.width, level.a.height, threads_))
-    for (int y = 0; y < level.a.height; ++y) invert(level.a, y, level.inverse_diagonal.row(y));
-  }
-
-  void couple(const PixelCouplings& fine, PixelCouplings& coarse) const {
-#pragma omp parallel for schedule(static) num_threads(threads_for(fine.width, fine.height, threads_))
-    for (int y = 0; y < coarse.height; ++y) couple_coarse(fine, y, coarse);
+  void couple(const Level& fine, Level& coarse) {
+    for_bands(coarse, [&](Band& band) {
+      for (int y = band.begin; y < band.end; ++y) couple_coarse(fine.a, y, band.residual, coarse.a);
+    });
   }
 
   std::span<const float> steps_of(std::size_t i) const {
@@ -448,13 +460,15 @@ class ScreenedPoisson::Multigrid {
   void solve_coarsest() {
     Level& level = levels_.back();
     const PixelCouplings& a = level.a;
+    Band& band = bands_[0];
+    for (int y = 0; y < a.height; ++y) invert_diagonal(level, y, band);
     for (std::size_t c = 0; c < 3; ++c) {
       PixelPlane& x = level.x[c];
       std::fill(x.values.begin(), x.values.end(), 0.f);
       for (int step = 0; step < coarsest_steps; ++step)
         for (int y = 0; y < a.height; ++y)
           for (int i = 0; i < a.width; ++i)
-            x.row(y)[i] = level.inverse_diagonal.row(y)[i] *
+            x.row(y)[i] = band.inverse_diagonal.row(0, y)[i] *
                           (level.b[c].row(y)[i] +
                            (a.right.row(y)[i] * x.row(y)[i + 1] + a.right.row(y)[i - 1] * x.row(y)[i - 1]) +
                            (a.below.row(y)[i] * x.row(y + 1)[i] + a.below.row(y - 1)[i] * x.row(y - 1)[i]));
@@ -480,11 +494,10 @@ PixelPlanes ScreenedPoisson::solve(PixelEquations equations) {
 }
 
 std::uint64_t bytes_to_solve(int width, int height, int threads) {
-  constexpr std::uint64_t planes_of_level = 3 + 1 + 2 * 3;  // couplings, their inverse diagonal, b and x
-  constexpr int steps = 6, rows_of_a_band = 3 * (steps * RecentRows::kept + 1);
+  constexpr int steps = 6, rows_of_a_band = steps * RecentRows::number + InverseRows::number + 3;
   std::uint64_t bytes = static_cast<std::uint64_t>(threads) * PixelPlane::bytes_of(width, rows_of_a_band);
   for (int w = width, h = height;; w = (w + 1) / 2, h = (h + 1) / 2) {
-    bytes += planes_of_level * PixelPlane::bytes_of(w, h) +
+    bytes += 3 * CouplingPlane::bytes_of(w, h) + 2 * 3 * PixelPlane::bytes_of(w, h) +  // b and x
              static_cast<std::uint64_t>(threads_for(w, h, threads)) *
                  PixelPlane::bytes_of(w, 2 * 3 * rows_outside);
     if (std::max(w, h) <= coarsest_side) return bytes;
