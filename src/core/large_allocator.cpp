@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -14,7 +15,7 @@ namespace {
 constexpr std::size_t cache_line = 64, page = 4096, large_page = std::size_t{1} << 21;
 
 /// Blocks of at least 64 pages are whole pages of their own, all provided at once: one by one, as they are
-/// used, takes several times as long.
+/// used, takes several times as long. Of at least two large pages they begin at one.
 std::size_t alignment_of(std::size_t bytes) {
   if (bytes >= 2 * large_page) return large_page;
   return bytes >= 64 * page ? page : cache_line;
@@ -41,7 +42,8 @@ void* allocate_large(std::size_t bytes) {
   const std::size_t before = -reinterpret_cast<std::uintptr_t>(begin) % large_page;
   if (before > 0) munmap(begin, before);
   munmap(begin + before + size, more - before - size);
-  madvise(begin + before, size, MADV_HUGEPAGE);  // without it pages are small
+  // without it pages are small; so are those of the rest, which else would take a large one
+  madvise(begin + before, size / large_page * large_page, MADV_HUGEPAGE);
   return begin + before;
 }
 
@@ -53,8 +55,8 @@ void free_large(void* memory, std::size_t bytes) {
 }
 
 std::size_t bytes_in_large_pages(std::size_t bytes) {
-  const std::size_t alignment = alignment_of(bytes);
-  return (bytes + alignment - 1) / alignment * alignment;
+  const std::size_t unit = std::min(alignment_of(bytes), page);
+  return (bytes + unit - 1) / unit * unit;
 }
 
 }  // namespace castray

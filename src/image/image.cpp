@@ -159,13 +159,14 @@ std::string suffix_of_image(std::string_view bytes) {
   return "";
 }
 
-std::vector<unsigned char> quantised(const Image& rows, const Display& display) {
-  const Image values = displayed(rows, display);
+std::vector<unsigned char> quantised(std::span<const Vec3f> row, const Display& display) {
+  const double factor = std::exp2(display.exposure);
   std::vector<unsigned char> bytes;
-  bytes.reserve((display.bits16 ? 6 : 3) * values.pixels.size());
-  for (const Vec3f& v : values.pixels)
+  bytes.reserve((display.bits16 ? 6 : 3) * row.size());
+  for (const Vec3f& pixel : row)
     for (int c = 0; c < 3; ++c) {
-      const long value = std::lround((display.bits16 ? 65535 : 255) * v[c]);
+      const auto shown = static_cast<float>(display.tone.encode(pixel[c] * factor));
+      const long value = std::lround((display.bits16 ? 65535 : 255) * shown);
       if (display.bits16) bytes.push_back(static_cast<unsigned char>(value >> 8));
       bytes.push_back(static_cast<unsigned char>(value & 255));
     }

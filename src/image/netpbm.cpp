@@ -137,8 +137,10 @@ class PpmWriter final : public RowWriter {
     out << "P6\n" << image.width << ' ' << image.height << (display_.bits16 ? "\n65535\n" : "\n255\n");
   }
   void add(const Image& rows) override {
-    const std::vector<unsigned char> bytes = quantised(rows, display_);
-    out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    for (int y = 0; y < rows.height; ++y) {
+      const std::vector<unsigned char> bytes = quantised(row_of(rows, y), display_);
+      out_.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    }
   }
 
  private:

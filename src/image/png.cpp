@@ -113,11 +113,9 @@ bool begin_image(const Writer& writer, const WrittenImage& image, const std::vec
   return true;
 }
 
-bool write_rows(const Writer& writer, const std::vector<unsigned char>& bytes, int rows) {
+bool write_row(const Writer& writer, const std::vector<unsigned char>& bytes) {
   if (setjmp(png_jmpbuf(writer.png))) return false;
-  const std::size_t row_bytes = bytes.size() / static_cast<std::size_t>(rows);
-  for (int y = 0; y < rows; ++y)
-    png_write_row(writer.png, bytes.data() + static_cast<std::size_t>(y) * row_bytes);
+  png_write_row(writer.png, bytes.data());
   return true;
 }
 
@@ -192,7 +190,7 @@ class PngWriter final : public RowWriter {
     demand(begin_image(writer_, image, texts));
   }
   void add(const Image& rows) override {
-    demand(write_rows(writer_, quantised(rows, display_), rows.height));
+    for (int y = 0; y < rows.height; ++y) demand(write_row(writer_, quantised(row_of(rows, y), display_)));
   }
   void finish() override { demand(end_image(writer_)); }
 

@@ -128,11 +128,11 @@ std::array<PixelPlanes, 2> corrections(const DifferenceSums& sums, int threads, 
 
 Image image_of(const Film& film, int threads) {
   if (threads <= 0) threads = available_threads();
-  Image image = film.image(threads);
   const DifferenceSums& sums = film.differences();
-  if (!sums.kept() || !may_need_corrections(sums)) return image;
+  if (!sums.kept() || !may_need_corrections(sums)) return film.image(threads);
   const std::array<PixelPlanes, 2> both = corrections(sums, threads);
   const auto share = static_cast<float>(share_of_corrections(sums, both, threads) * sums.scale());
+  Image image = film.image(threads);  // last, as the solver, which takes most memory, is done with
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (int y = 0; y < film.height(); ++y) add_row(film, both, share, y, image);
   return image;
@@ -141,22 +141,21 @@ Image image_of(const Film& film, int threads) {
 std::uint64_t bytes_of_image(const Film& like, int width, int height, int threads) {
   const auto w = static_cast<std::uint64_t>(width), pixels = w * static_cast<std::uint64_t>(height);
   constexpr std::uint64_t shown =
-      sizeof(Vec3f) + 3 * sizeof(std::uint16_t);  // by the tone curve, and as bytes
+      sizeof(Vec3f) + 3 * sizeof(std::uint16_t);  // as writers of formats change and pack it
   constexpr std::uint64_t noise = sizeof(Vec3f), line_buffers = 1024;
-  const std::uint64_t writing = pixels * (shown + (like.keeps_replicates() ? noise : 0)) + w * line_buffers;
-  std::uint64_t making = 0;
-  if (like.differences().kept()) {
-    const int strips = (height + HalfStrip::rows - 1) / HalfStrip::rows;
-    constexpr int planes_of_a_half = 6 * (HalfStrip::rows + 2) + 3 * (HalfStrip::rows + 3),
-                  vectors_of_a_half = 2 * 3 * (3 + 1) + 6 + 4 + 4, rows_of_right_side = 9;
-    making = 3 * (CouplingPlane::bytes_of(width, height) +
-                  PixelPlane::bytes_of(width, height)) +  // the equations of the other half
-             bytes_to_solve(width, height, threads) +
-             6 * PixelPlane::bytes_of(width, strips) +
-             static_cast<std::uint64_t>(threads) *
-                 PixelPlane::bytes_of(width, 2 * (planes_of_a_half + vectors_of_a_half) + rows_of_right_side);
-  }
-  return pixels * sizeof(Vec3f) + std::max(making, writing);
+  const std::uint64_t image = pixels * sizeof(Vec3f),
+                      writing = pixels * (shown + (like.keeps_replicates() ? noise : 0)) + w * line_buffers;
+  if (!like.differences().kept()) return image + writing;
+  const int strips = (height + HalfStrip::rows - 1) / HalfStrip::rows;
+  constexpr int planes_of_a_half = 6 * (HalfStrip::rows + 2) + 3 * (HalfStrip::rows + 3),
+                vectors_of_a_half = 2 * 3 * (3 + 1) + 6 + 4 + 4, rows_of_right_side = 9;
+  const std::uint64_t plane = PixelPlane::bytes_of(width, height),
+                      equations = 3 * (CouplingPlane::bytes_of(width, height) + plane);
+  const std::uint64_t solving =
+      equations + bytes_to_solve(width, height, threads) + 6 * PixelPlane::bytes_of(width, strips) +
+      static_cast<std::uint64_t>(threads) *
+          PixelPlane::bytes_of(width, 2 * (planes_of_a_half + vectors_of_a_half) + rows_of_right_side);
+  return std::max({solving, 2 * 3 * plane + image, image + writing});
 }
 
 }  // namespace castray

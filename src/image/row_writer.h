@@ -2,6 +2,8 @@
 
 #include <iosfwd>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "castray/image.h"
 
@@ -37,7 +39,10 @@ std::unique_ptr<RowWriter> write_exr(std::ostream& out, const WrittenImage& imag
 std::unique_ptr<RowWriter> row_writer(const std::filesystem::path& file, std::ostream& out,
                                       const WrittenImage& image);
 
-/// Rows of RGB of 8 or 16 bits, big-endian.
-std::vector<unsigned char> quantised(const Image& rows, const Display& display);
+/// A row of an image, and pixels as RGB of 8 or 16 bits, big-endian.
+inline std::span<const Vec3f> row_of(const Image& image, int y) {
+  return {&image.at(0, y), static_cast<std::size_t>(image.width)};
+}
+std::vector<unsigned char> quantised(std::span<const Vec3f> row, const Display& display);
 
 }  // namespace castray
