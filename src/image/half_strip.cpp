@@ -23,6 +23,8 @@ constexpr float least_of_difference = 1e-3f, least_of_mean = 1e-4f, least_of_sca
 /// The most that a pair weighs more than a mean, so that corrections reach some twenty pixels and not much
 /// further: where few samples tell the weights, differences that are trusted too much add up along the way.
 constexpr float stiffest = 512;
+/// How much more a sample of a difference weighs than one of a mean, where nothing else is known.
+constexpr float usual_stiffness = 128;
 
 float square(float x) { return x * x; }
 float at_least(float x, float least) { return x < least ? least : x; }
@@ -33,6 +35,12 @@ void find_contradictions(int pairs, const double* difference, const double* mean
                          float* __restrict contradiction) {
   for (int x = 0; x < pairs; ++x)
     contradiction[x] = static_cast<float>(difference[x] - (neighbour[x] - mean[x]));
+}
+
+CASTRAY_VECTOR_CLONES
+void write_counts(int number, float factor, const std::uint32_t* first, const std::uint32_t* second,
+                  float* __restrict weight) {
+  for (int x = 0; x < number; ++x) weight[x] = factor * static_cast<float>(first[x] + second[x]);
 }
 
 CASTRAY_VECTOR_CLONES
@@ -176,6 +184,18 @@ void HalfStrip::find_weights(int other_half, PixelCouplings& weights) {
   for (int y = begin_; y < end_; ++y) {
     if (y % block == 0) find_blocks(y);
     write_weights(y, other_half, weights);
+  }
+}
+
+void HalfStrip::count_weights(PixelCouplings& weights) {
+  const auto write = [&](int y, Term term, float factor, int number, CouplingPlane& plane) {
+    write_counts(number, factor, sums_.counts(0, y, term), sums_.counts(1, y, term), weights_.data());
+    round_weights(number, weights_.data(), plane.row(y));
+  };
+  for (int y = begin_; y < end_; ++y) {
+    write(y, Term::own, 1, w_, weights.screen);
+    write(y, Term::right, usual_stiffness, w_ - 1, weights.right);
+    if (y + 1 < h_) write(y, Term::below, usual_stiffness, w_, weights.below);
   }
 }
 

@@ -9,8 +9,8 @@
 
 namespace castray {
 
-/// What one half of a film's samples says of a strip of rows: what means and differences contradict each
-/// other, and how far it would trust them.
+/// What one half of a film's samples, or both, says of a strip of rows: what means and differences contradict
+/// each other, and how far it would trust them.
 class HalfStrip {
  public:
   static constexpr int rows = 16;  ///< of a strip; the first is a multiple of this
@@ -38,6 +38,9 @@ class HalfStrip {
   /// the samples in which these were in different tiles; so what they contradict each other tells the
   /// variance of the means. That of differences is at most how much they vary among neighbours.
   void find_weights(int other_half, PixelCouplings& weights);
+
+  /// Weights of both halves as one: their numbers of samples, times a constant that holds for all pixels.
+  void count_weights(PixelCouplings& weights);
 
  private:
   using Term = DifferenceSums::Term;

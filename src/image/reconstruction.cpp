@@ -59,68 +59,83 @@ class RightSide {
   Rows above_, below_;  ///< between a pixel and those of the rows around
 };
 
-using BothEquations = std::array<PixelEquations, 2>;
-
-/// The film is read once for all.
-BothEquations equations_of(const DifferenceSums& sums, int threads, WeightsOf weights_of) {
+/// The equations of some parts of the samples, which are halves or both. `find_weights` has strips of all
+/// parts. The film is read once for all.
+template <std::size_t parts, class FindWeights>
+std::array<PixelEquations, parts> equations_of(const DifferenceSums& sums, const int (&part)[parts],
+                                               int threads, FindWeights find_weights) {
   const int w = sums.width(), h = sums.height(), strips = (h + HalfStrip::rows - 1) / HalfStrip::rows;
-  BothEquations equations = {PixelEquations(w, h), PixelEquations(w, h)};
-  std::array<PixelPlanes, 2> handed_on;
+  std::array<PixelEquations, parts> equations;
+  std::array<PixelPlanes, parts> handed_on;
+  for (PixelEquations& of_part : equations) of_part = PixelEquations(w, h);
   for (PixelPlanes& planes : handed_on)
     for (PixelPlane& plane : planes) plane = PixelPlane(w, strips);
 #pragma omp parallel num_threads(threads)
   {
-    HalfStrip halves[] = {HalfStrip(sums, 0), HalfStrip(sums, 1)};
+    std::vector<HalfStrip> read;
+    for (const int half : part) read.emplace_back(sums, half);
     RightSide right_side(w);
 #pragma omp for schedule(static)
     for (int strip = 0; strip < strips; ++strip) {
-      for (int half = 0; half < 2; ++half) {
-        const int used_by = weights_of == WeightsOf::other_half ? 1 - half : half;
-        halves[half].read(strip * HalfStrip::rows);
-        halves[half].find_weights(used_by, equations[static_cast<std::size_t>(used_by)].a);
-      }
-      for (std::size_t half = 0; half < 2; ++half)
-        right_side.write(halves[half], equations[half], handed_on[half]);
+      for (HalfStrip& of_part : read) of_part.read(strip * HalfStrip::rows);
+      find_weights(read, equations);
+      for (std::size_t i = 0; i < parts; ++i) right_side.write(read[i], equations[i], handed_on[i]);
     }
 #pragma omp for schedule(static)
     for (int strip = 1; strip < strips; ++strip)
-      for (std::size_t half = 0; half < 2; ++half)
+      for (std::size_t i = 0; i < parts; ++i)
         for (std::size_t c = 0; c < 3; ++c) {
-          const float* from = handed_on[half][c].row(strip - 1);
-          float* b = equations[half].b[c].row(strip * HalfStrip::rows);
+          const float* from = handed_on[i][c].row(strip - 1);
+          float* b = equations[i].b[c].row(strip * HalfStrip::rows);
           for (int x = 0; x < w; ++x) b[x] += from[x];
         }
   }
   return equations;
 }
 
-/// Adds a share of the corrections to the means of row y.
+/// Adds a share of the correction of a part of the samples, a half or both, to the means of row y.
 CASTRAY_VECTOR_CLONES
-void add_row(const Film& film, const std::array<PixelPlanes, 2>& corrections, float share, int y,
-             Image& image) {
+void add_row(const Film& film, int part, const PixelPlanes& correction, float share, int y, Image& image) {
   const Window& window = film.window();
-  for (std::size_t half = 0; half < 2; ++half) {
-    const std::uint32_t* count = film.differences().counts(static_cast<int>(half), y, Term::own);
-    const float *red = corrections[half][0].row(y), *green = corrections[half][1].row(y),
-                *blue = corrections[half][2].row(y);
-    for (int x = 0; x < film.width(); ++x) {
-      const float all = static_cast<float>(film.count(window.x0 + x, window.y0 + y));
-      const float part = share * static_cast<float>(count[x]) / (all > 0 ? all : 1);  // of none there is none
-      image.at(x, y) += Vec3f(red[x], green[x], blue[x]) * part;
-    }
+  const bool both = part == both_halves;
+  const std::uint32_t *count = film.differences().counts(both ? 0 : part, y, Term::own),
+                      *second_count = film.differences().counts(1, y, Term::own);
+  const float *red = correction[0].row(y), *green = correction[1].row(y), *blue = correction[2].row(y);
+  for (int x = 0; x < film.width(); ++x) {
+    const float all = static_cast<float>(film.count(window.x0 + x, window.y0 + y)),
+                smooth = static_cast<float>(count[x] + (both ? second_count[x] : 0));
+    const float weight = share * smooth / (all > 0 ? all : 1);  // of none there is none
+    image.at(x, y) += Vec3f(red[x], green[x], blue[x]) * weight;
   }
-}
-
-/// Whether a half has two samples of any pixel. Of one sample, differences are those of the means.
-bool may_need_corrections(const DifferenceSums& sums) {
-  const auto& counts = sums.all_counts();
-  return std::any_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count > 1; });
 }
 
 }  // namespace
 
+bool has_few_samples(const DifferenceSums& sums) {
+  constexpr std::uint32_t few = 2;
+  for (int y = 0; y < sums.height(); ++y) {
+    const std::uint32_t* count = sums.counts(1, y, Term::own);
+    if (std::any_of(count, count + sums.width(), [](std::uint32_t number) { return number > few; }))
+      return false;
+  }
+  return true;
+}
+
+PixelPlanes correction_of_few(const DifferenceSums& sums, int threads) {
+  auto equations = equations_of(sums, {both_halves}, threads, [](const auto& read, auto& of_parts) {
+    read[0].count_weights(of_parts[0].a);
+  });
+  return ScreenedPoisson(sums.width(), sums.height(), threads).solve(std::move(equations[0]));
+}
+
 std::array<PixelPlanes, 2> corrections(const DifferenceSums& sums, int threads, WeightsOf weights) {
-  BothEquations equations = equations_of(sums, threads, weights);
+  auto equations = equations_of(sums, {0, 1}, threads, [weights](auto& read, auto& of_parts) {
+    for (int half = 0; half < 2; ++half) {
+      const int used_by = weights == WeightsOf::other_half ? 1 - half : half;
+      read[static_cast<std::size_t>(half)].find_weights(used_by,
+                                                        of_parts[static_cast<std::size_t>(used_by)].a);
+    }
+  });
   ScreenedPoisson solver(sums.width(), sums.height(), threads);
   PixelPlanes first = solver.solve(std::move(equations[0]));
   return {std::move(first), solver.solve(std::move(equations[1]))};
@@ -129,12 +144,22 @@ std::array<PixelPlanes, 2> corrections(const DifferenceSums& sums, int threads, 
 Image image_of(const Film& film, int threads) {
   if (threads <= 0) threads = available_threads();
   const DifferenceSums& sums = film.differences();
-  if (!sums.kept() || !may_need_corrections(sums)) return film.image(threads);
+  if (!sums.kept()) return film.image(threads);
+  if (has_few_samples(sums)) {
+    const PixelPlanes correction = correction_of_few(sums, threads);
+    const auto scale = static_cast<float>(sums.scale());
+    Image image = film.image(threads);  // last, as the solver, which takes most memory, is done with
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int y = 0; y < film.height(); ++y) add_row(film, both_halves, correction, scale, y, image);
+    return image;
+  }
   const std::array<PixelPlanes, 2> both = corrections(sums, threads);
   const auto share = static_cast<float>(share_of_corrections(sums, both, threads) * sums.scale());
-  Image image = film.image(threads);  // last, as the solver, which takes most memory, is done with
+  Image image = film.image(threads);
 #pragma omp parallel for schedule(static) num_threads(threads)
-  for (int y = 0; y < film.height(); ++y) add_row(film, both, share, y, image);
+  for (int y = 0; y < film.height(); ++y)
+    for (int half = 0; half < 2; ++half)
+      add_row(film, half, both[static_cast<std::size_t>(half)], share, y, image);
   return image;
 }
 

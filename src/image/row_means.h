@@ -8,6 +8,9 @@
 
 namespace castray {
 
+/// Stands for both halves of a film's samples where a half is asked for.
+inline constexpr int both_halves = DifferenceSums::halves;
+
 /// The means of a row's pixels, or differences, in three channels, over the film's scale: reconstruction
 /// squares them, which in other units might leave the range of floats.
 struct RowMeans {
@@ -18,6 +21,7 @@ struct RowMeans {
     for (auto& values : channel) values.resize(static_cast<std::size_t>(width));
   }
 
+  /// Of a half, or of both.
   void read(const DifferenceSums& sums, int half, int y, DifferenceSums::Term term);
   void find_luminance(float* luminances) const;
 };
