@@ -13,10 +13,12 @@ inline constexpr int tile_side = 8;
 /// How far outside its square a pixel of a ragged tile lies at most.
 inline constexpr int tile_reach = tile_side / 2;
 
-/// One sample of every pixel of a tile, whose paths are shared.
+/// One sample of every pixel of a tile, whose paths are shared; or one of the takes of it, each in tiles of
+/// its own, of which the sample is the mean.
 struct TileSamples {
   int x = 0, y = 0;               ///< top left pixel in the full image; may lie outside
   std::uint64_t sample = 0;       ///< its index
+  int take = 0, takes = 1;        ///< which of how many, 1 or DifferenceSums::most_takes
   std::uint64_t kept = 0;         ///< bit i: the sample counts, and lies in the film's window
   std::uint64_t smooth = 0;       ///< likewise: it is finite, and its pixel, of the full image, sees no edge
   const float* radiance[3] = {};  ///< of pixel i
@@ -34,7 +36,7 @@ struct TileSamples {
 /// even index and those of odd index, which must be independent of each other, are kept apart as two halves.
 ///
 /// All are whole numbers, so that they do not depend on the order of addition. Radiance, here that of
-/// reflected light alone, is rounded to a multiple of 2^-36 of the film's scale. Sums hold 2^27 samples as
+/// reflected light alone, is rounded to a multiple of 2^-36 of the film's scale. Sums hold 2^26 samples as
 /// bright as the scale.
 class DifferenceSums {
  public:
@@ -42,6 +44,8 @@ class DifferenceSums {
   /// What is summed of a pixel: its radiance, and how much greater that of a neighbour is.
   enum Term { own, right, below };
   static constexpr int terms = 3, channels = 3;
+  /// Of a sample. Sums and counts are of takes: a sample of one take counts as so many alike.
+  static constexpr int most_takes = 2;
   static constexpr std::size_t bytes_of_counts = halves * terms * sizeof(std::uint32_t),
                                bytes_of_sums = halves * terms * channels * sizeof(std::int64_t),
                                bytes_of_pixel = bytes_of_sums + bytes_of_counts;
@@ -53,11 +57,11 @@ class DifferenceSums {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Of the pixels of row y, over their samples.
+  /// Of the pixels of row y, over their takes.
   const std::int64_t* sums(int half, int y, Term term, int channel) const {
     return &sums_[row(half, y) * channels + place(term * channels + channel)];
   }
-  /// The number of these samples.
+  /// The number of these takes.
   const std::uint32_t* counts(int half, int y, Term term) const {
     return &counts_[row(half, y) + place(term)];
   }
@@ -68,7 +72,7 @@ class DifferenceSums {
   /// Adds `count` pixels of another, from (other_x,other_y) on, to those from (x,y) on.
   void add_row(int x, int y, const DifferenceSums& other, int other_x, int other_y, int count);
 
-  /// Radiance is this times the sum; and the same over the film's scale.
+  /// Radiance is this times the sum, over the number of takes; and the same over the film's scale.
   double radiance_unit() const { return scale_ * unit_over_scale; }
   static constexpr double unit_over_scale = 0x1p-36;
   double scale() const { return scale_; }

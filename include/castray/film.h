@@ -64,8 +64,9 @@ class Film {
   void keep_differences();
   const DifferenceSums& differences() const { return differences_; }
 
-  /// Adds rows y0 <= y < y1 of one sample of tiles side by side, from left to right, y of the full image, to
-  /// a film that keeps differences.
+  /// Adds rows y0 <= y < y1 of one sample, or take, of tiles side by side, from left to right, y of the full
+  /// image, to a film that keeps differences. With its last take a sample counts; a take that is not finite
+  /// is black, if the last one is finite.
   void add(std::span<const TileSamples> tiles, int y0, int y1);
 
   /// Starts to keep splats: what paths from lights bring to the pixels that they happen to be seen in.

@@ -57,7 +57,7 @@ void bytes_of_bits(std::uint64_t tile, int r, Bytes& bytes) {
   bytes = (bit_of_column & static_cast<std::int8_t>(tile >> (r * columns))) != 0;
 }
 
-/// What one sample of some tiles side by side gives to the pixels of the window, and which tile each has it
+/// What one take of some tiles side by side gives to the pixels of the window, and which tile each has it
 /// from.
 class TileStrip {
  public:
@@ -135,6 +135,7 @@ struct RowOfTerm {
   std::int64_t* sums;
   std::uint32_t* counts;
   int width;
+  std::uint32_t takes;  ///< that they are summed as
 
   /// Adds values to the eight pixels from x on in which `which` is all ones: pixels of the window.
   void add(const Bytes& which, const Longs (&values)[3], int x) const {
@@ -142,7 +143,7 @@ struct RowOfTerm {
     const Longs mask = __builtin_convertvector(which, Longs);
     Counts count;
     load(counts + x, count);
-    store(count - __builtin_convertvector(which, Counts), counts + x);
+    store(count + (__builtin_convertvector(which, Counts) & takes), counts + x);
     for (int c = 0; c < 3; ++c) {
       std::int64_t* to = sums + c * width + x;
       Longs sum;
@@ -162,7 +163,7 @@ struct RowOfTerm {
   void add_some(const Bytes& which, const Longs (&values)[3], int x) const {
     for (int i = 0; i < columns; ++i) {
       if (which[i] == 0) continue;
-      ++counts[x + i];
+      counts[x + i] += takes;
       for (int c = 0; c < 3; ++c) sums[c * width + x + i] += values[c][i];
     }
   }
@@ -185,12 +186,13 @@ void DifferenceSums::add(std::span<const TileSamples> tiles, int y0, int y1, int
 
 CASTRAY_VECTOR_CLONES
 void DifferenceSums::add_strip(std::span<const TileSamples> tiles, int y0, int y1, int left, int top) {
-  const int half = static_cast<int>(tiles[0].sample & 1);
-  const TileStrip strip(tiles, left, top, 1 / radiance_unit());
+  const int half = static_cast<int>(tiles[0].sample & 1), takes = most_takes / tiles[0].takes;
+  const TileStrip strip(tiles, left, top, takes / radiance_unit());
   const int begin = std::max(strip.y(), y0 - top), end = std::min(strip.y() + TileStrip::height, y1 - top);
   const auto row_of = [&](int y, Term term) {
     const std::size_t at = row(half, y) + place(term);
-    return RowOfTerm{sums_.data() + at * channels, counts_.data() + at, width_};
+    return RowOfTerm{sums_.data() + at * channels, counts_.data() + at, width_,
+                     static_cast<std::uint32_t>(takes)};
   };
   for (int y = begin; y < end; ++y) {
     const RowOfTerm of_own = row_of(y, own), of_right = row_of(y, right), of_below = row_of(y, below);

@@ -124,11 +124,17 @@ void Film::keep_differences() { differences_ = DifferenceSums(width(), height(),
 
 CASTRAY_VECTOR_CLONES
 void Film::add(std::span<const TileSamples> tiles, int y0, int y1) {
-  for (const TileSamples& tile : tiles)
+  for (const TileSamples& tile : tiles) {
+    const float share = 1 / static_cast<float>(tile.takes);
+    const std::uint32_t counted = tile.take + 1 == tile.takes ? 1 : 0;
     for (std::uint64_t kept = tile.kept; kept != 0; kept &= kept - 1) {
       const int i = std::countr_zero(kept), x = tile.x_of(i), y = tile.y_of(i);
-      if (y >= y0 && y < y1) add(x, y, Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]));
+      if (y < y0 || y >= y1) continue;
+      const std::size_t pixel = index(x, y);
+      add(&sums_[3 * pixel], Vec3f(tile.radiance[0][i], tile.radiance[1][i], tile.radiance[2][i]) * share);
+      counts_[pixel] += counted;
     }
+  }
   differences_.add(tiles, y0, y1, window_.x0, window_.y0);
 }
 

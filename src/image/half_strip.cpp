@@ -24,7 +24,7 @@ constexpr float least_of_difference = 1e-3f, least_of_mean = 1e-4f, least_of_sca
 /// further: where few samples tell the weights, differences that are trusted too much add up along the way.
 constexpr float stiffest = 512;
 /// How much more a sample of a difference weighs than one of a mean, where nothing else is known.
-constexpr float usual_stiffness = 128;
+constexpr float usual_stiffness = 256;
 
 float square(float x) { return x * x; }
 float at_least(float x, float least) { return x < least ? least : x; }
@@ -66,7 +66,8 @@ void write_pairs(int number, const Pairs& of, float* __restrict weight) {
                 own = square(of.difference[x] - mean);
     const float doubtful =
         doubt * at_least(mean_square, square(of.difference[x])) + of.least[x] + square(least_of_scale);
-    const float variance = at_least(among, own) + doubtful / static_cast<float>(of.count[x]);
+    const float samples = static_cast<float>(of.count[x]) / DifferenceSums::most_takes;
+    const float variance = at_least(among, own) + doubtful / samples;
     const float trusted = 1 / variance, most = stiffest * of.screen[x];
     const float found = most < trusted ? most : trusted;
     weight[x] = ((of.count[x] > 0) & (of.other_count[x] > 0) & (n >= 2)) ? found : 0;

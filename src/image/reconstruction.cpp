@@ -103,7 +103,8 @@ void add_row(const Film& film, int part, const PixelPlanes& correction, float sh
   const float *red = correction[0].row(y), *green = correction[1].row(y), *blue = correction[2].row(y);
   for (int x = 0; x < film.width(); ++x) {
     const float all = static_cast<float>(film.count(window.x0 + x, window.y0 + y)),
-                smooth = static_cast<float>(count[x] + (both ? second_count[x] : 0));
+                smooth =
+                    static_cast<float>(count[x] + (both ? second_count[x] : 0)) / DifferenceSums::most_takes;
     const float weight = share * smooth / (all > 0 ? all : 1);  // of none there is none
     image.at(x, y) += Vec3f(red[x], green[x], blue[x]) * weight;
   }
@@ -112,7 +113,7 @@ void add_row(const Film& film, int part, const PixelPlanes& correction, float sh
 }  // namespace
 
 bool has_few_samples(const DifferenceSums& sums) {
-  constexpr std::uint32_t few = 2;
+  constexpr std::uint32_t few = 2 * DifferenceSums::most_takes;
   for (int y = 0; y < sums.height(); ++y) {
     const std::uint32_t* count = sums.counts(1, y, Term::own);
     if (std::any_of(count, count + sums.width(), [](std::uint32_t number) { return number > few; }))
@@ -122,9 +123,8 @@ bool has_few_samples(const DifferenceSums& sums) {
 }
 
 PixelPlanes correction_of_few(const DifferenceSums& sums, int threads) {
-  auto equations = equations_of(sums, {both_halves}, threads, [](const auto& read, auto& of_parts) {
-    read[0].count_weights(of_parts[0].a);
-  });
+  auto equations = equations_of(sums, {both_halves}, threads,
+                                [](auto& read, auto& of_parts) { read[0].count_weights(of_parts[0].a); });
   return ScreenedPoisson(sums.width(), sums.height(), threads).solve(std::move(equations[0]));
 }
 

@@ -20,11 +20,15 @@ struct TileGrid {
   int reach;                     ///< over a tile's edges, in pixels
   int x0, y0, x1, y1;            ///< tiles
 
-  TileGrid(const Window& window, const KernelOptions& options, std::uint64_t sample) {
+  /// Grids of two takes of a sample lie half a tile apart.
+  TileGrid(const Window& window, const KernelOptions& options, std::uint64_t sample, int take = 0) {
     if (options.suffixes > 0) {
       const auto u = sample_block(SamplerKind::sobol, hash_combine(options.seed, 0x5b1f7u), sample, 0);
-      shift_x = static_cast<int>(u[0] * tile_size);
-      shift_y = static_cast<int>(u[1] * tile_size);
+      const auto shift = [take](float from) {
+        return (static_cast<int>(from * tile_size) + take * tile_size / 2) % tile_size;
+      };
+      shift_x = shift(u[0]);
+      shift_y = shift(u[1]);
     }
     reach = sample < options.ragged ? ragged_reach : 0;
     const auto tile_of = [](int pixel) {

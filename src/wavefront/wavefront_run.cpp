@@ -39,6 +39,9 @@ std::uint64_t sample_of_half(std::uint64_t sample) {
 std::uint32_t seed_of_half(std::uint32_t seed, std::uint64_t sample) {
   return hash_combine(seed, 0x4a1fu + static_cast<std::uint32_t>(sample & 1));
 }
+std::uint32_t seed_of_take(std::uint32_t seed, int take) {
+  return take == 0 ? seed : hash_combine(seed, 0x7a4eu + static_cast<std::uint32_t>(take));
+}
 
 }  // namespace
 
@@ -68,36 +71,49 @@ WavefrontRun::WavefrontRun(const Scene& scene, const KernelApi& kernel, const Ke
 
 void WavefrontRun::render_band(int row, const SampleRange& samples, const SampleMap& map, Film& film,
                                RowStats& stats) {
-  Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
-  TileResult result = workplace.tiles.result(differences_);
   const int columns = (window_.width() + 2 * ragged_reach) / tile_size + 2;
   for (int column = 0; column < columns; column += max_tiles)
-    for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s) {
-      KernelOptions options = options_;
-      if (differences_) options.seed = seed_of_half(options_.seed, s);
-      const std::uint64_t drawn = differences_ ? sample_of_half(s) : s;
-      const TileGrid grid(window_, options, drawn);
-      const int x0 = grid.x0 + column, x1 = std::min(x0 + max_tiles, grid.x1);
-      for (int y = grid.y0 + row; y < grid.y1; y += bands_)
-        for (int x = x0; x < x1;) {
-          TileJob job = grid.job(x, x1, y, s, map);
-          x += std::max(job.tiles, 1);
-          if (job.tiles == 0) continue;
-          job.sample = drawn;
-          // what pixels see of an edge is the better spread the longer the sequence of their camera rays:
-          // it is one for both halves, as these pixels have no part in differences
-          job.edge_sample = s * static_cast<std::uint64_t>(edge_samples_);
-          job.edge_seed = options_.seed;
-          render_job(job, options, workplace, result);
-          job.sample = s;
-          if (differences_)
-            add_tiles(job, grid.reach, result, map, film, stats);
-          else
-            add(job, grid.reach, result, map, film, stats);
-        }
-    }
+    for (std::uint64_t s = samples.first; s < samples.first + samples.count; ++s)
+      for (Take take{s, 0, takes_of(s)}; take.number < take.of; ++take.number)
+        render_take(take, row, column, map, film, stats);
   for (std::uint64_t s = samples.first; trace_light_paths_ && s < samples.first + samples.count; ++s)
-    trace_light_paths(row, s, workplace, film, stats);
+    trace_light_paths(row, s, film, stats);
+}
+
+int WavefrontRun::takes_of(std::uint64_t sample) const {
+  const bool first = sample % replicate_length == 0;
+  return differences_ && first && options_.suffixes >= DifferenceSums::most_takes ? DifferenceSums::most_takes
+                                                                                  : 1;
+}
+
+void WavefrontRun::render_take(const Take& take, int row, int column, const SampleMap& map, Film& film,
+                               RowStats& stats) {
+  Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
+  TileResult result = workplace.tiles.result(differences_);
+  KernelOptions options = options_;
+  if (differences_) options.seed = seed_of_half(options_.seed, take.sample);
+  const std::uint64_t drawn = differences_ ? sample_of_half(take.sample) : take.sample;
+  const TileGrid grid(window_, options, drawn, take.number);
+  options.suffixes /= take.of;
+  options.seed = seed_of_take(options.seed, take.number);
+  const int x0 = grid.x0 + column, x1 = std::min(x0 + max_tiles, grid.x1);
+  for (int y = grid.y0 + row; y < grid.y1; y += bands_)
+    for (int x = x0; x < x1;) {
+      TileJob job = grid.job(x, x1, y, take.sample, map);
+      x += std::max(job.tiles, 1);
+      if (job.tiles == 0) continue;
+      job.sample = drawn;
+      // what pixels see of an edge is the better spread the longer the sequence of their camera rays: it is
+      // one for both halves, as these pixels have no part in differences
+      job.edge_sample = take.sample * static_cast<std::uint64_t>(edge_samples_);
+      job.edge_seed = seed_of_take(options_.seed, take.number);
+      render_job(job, options, workplace, result);
+      job.sample = take.sample;
+      if (differences_)
+        add_tiles(job, take, grid.reach, result, map, film, stats);
+      else
+        add(job, grid.reach, result, map, film, stats);
+    }
   stats.rays += result.rays;
 }
 
@@ -143,10 +159,10 @@ void WavefrontRun::find_first_hits() {
 }
 
 bool WavefrontRun::keeps(int x, int y, std::uint64_t sample, const Vec3f& radiance, const SampleMap& map,
-                         RowStats& stats) const {
+                         RowStats* stats) const {
   if (x < window_.x0 || x >= window_.x1 || y < window_.y0 || y >= window_.y1 || !map.wants(x, y, sample))
     return false;
-  if (!is_finite(radiance)) stats.nonfinite.push_back({x, y, sample});
+  if (stats && !is_finite(radiance)) stats->nonfinite.push_back({x, y, sample});
   return is_finite(radiance);
 }
 
@@ -161,13 +177,13 @@ void WavefrontRun::add(const TileJob& job, int reach, const TileResult& result, 
       const auto x = static_cast<int>(result.x[i]), y = static_cast<int>(result.y[i]);
       if (y < window_.y0 || lock_of(y) != l) continue;
       const Vec3f radiance = radiance_of(result, i);
-      if (keeps(x, y, job.sample, radiance, map, stats)) film.add(x, y, radiance);
+      if (keeps(x, y, job.sample, radiance, map, &stats)) film.add(x, y, radiance);
     }
   }
 }
 
-void WavefrontRun::trace_light_paths(int row, std::uint64_t sample, Workplace& workplace, Film& film,
-                                     RowStats& stats) {
+void WavefrontRun::trace_light_paths(int row, std::uint64_t sample, Film& film, RowStats& stats) {
+  Workplace& workplace = workplaces_[static_cast<std::size_t>(omp_get_thread_num())];
   struct Receiver {
     WavefrontRun& run;
     std::uint64_t sample;
@@ -205,10 +221,10 @@ void WavefrontRun::add_splat(int x, int y, std::uint64_t sample, const Vec3f& ra
   film.add_splat(x, y, radiance);
 }
 
-void WavefrontRun::add_tiles(const TileJob& job, int reach, const TileResult& result, const SampleMap& map,
-                             Film& film, RowStats& stats) {
+void WavefrontRun::add_tiles(const TileJob& job, const Take& take, int reach, const TileResult& result,
+                             const SampleMap& map, Film& film, RowStats& stats) {
   TileSamples tiles[max_tiles];
-  for (int k = 0; k < job.tiles; ++k) tiles[k] = tile_samples(job, k, reach > 0, result, map, stats);
+  for (int k = 0; k < job.tiles; ++k) tiles[k] = tile_samples(job, take, k, reach > 0, result, map, stats);
   const int first = std::max(job.y - reach, window_.y0),
             end = std::min(job.y + tile_size + reach, window_.y1);
   if (first >= end) return;
@@ -228,10 +244,12 @@ bool WavefrontRun::wants_all(const TileJob& job, int k, bool ragged, const Sampl
          map.wants_all(x0, y0, x1, y1, job.sample);
 }
 
-TileSamples WavefrontRun::tile_samples(const TileJob& job, int k, bool ragged, const TileResult& result,
-                                       const SampleMap& map, RowStats& stats) const {
+TileSamples WavefrontRun::tile_samples(const TileJob& job, const Take& take, int k, bool ragged,
+                                       const TileResult& result, const SampleMap& map,
+                                       RowStats& stats) const {
   const int first = k * tile_pixels;
-  TileSamples tile{.x = job.x + k * tile_size, .y = job.y, .sample = job.sample};
+  TileSamples tile{
+      .x = job.x + k * tile_size, .y = job.y, .sample = take.sample, .take = take.number, .takes = take.of};
   for (int c = 0; c < 3; ++c) {
     tile.radiance[c] = result.radiance[c] + first;
     tile.emitted[c] = result.emitted[c] + first;
@@ -252,9 +270,9 @@ TileSamples WavefrontRun::tile_samples(const TileJob& job, int k, bool ragged, c
     const bool smooth = (result.edges[k] & bit) == 0;
     const Vec3f radiance = radiance_of(result, first + i);
     if (x < 0 || x >= window_.full_width || y < 0 || y >= window_.full_height) continue;
-    if (keeps(x, y, job.sample, radiance, map, stats)) {
+    if (keeps(x, y, take.sample, radiance, map, take.is_last() ? &stats : nullptr)) {
       tile.kept |= bit;
-      if (!smooth) settle_emission(x, y, job.sample, first + i, result);
+      if (!smooth) settle_emission(x, y, take.sample, first + i, result);
     }
     if (smooth && is_finite(radiance)) tile.smooth |= bit;
   }

@@ -101,13 +101,38 @@ TEST_CASE("differences are summed over the samples whose tile has both pixels, b
   const auto sum = [&](Term term) {
     return static_cast<double>(sums.sums(0, y - window.y0, term, 1)[x - window.x0]) * sums.radiance_unit();
   };
-  CHECK(count(0, Term::own) == samples);
-  CHECK(count(0, Term::right) == with_right);
-  CHECK(count(0, Term::below) == with_below);
-  CHECK(sum(Term::own) == own);
-  CHECK(sum(Term::right) == right);
-  CHECK(sum(Term::below) == below);
+  constexpr std::uint32_t takes = DifferenceSums::most_takes;  // that each sample counts as
+  CHECK(count(0, Term::own) == takes * samples);
+  CHECK(count(0, Term::right) == takes * with_right);
+  CHECK(count(0, Term::below) == takes * with_below);
+  CHECK(sum(Term::own) == takes * own);
+  CHECK(sum(Term::right) == takes * right);
+  CHECK(sum(Term::below) == takes * below);
   CHECK(count(1, Term::own) == 0);
+}
+
+TEST_CASE("a sample of two takes is their mean, and counts with the last one") {
+  const auto film_of_takes = [](std::uint64_t kept_of_first) {
+    Film film({8, 8, 0, 0, 8, 8}, 1);
+    film.keep_differences();
+    for (int take = 0; take < 2; ++take) {
+      std::array<float, 64> radiance, emitted = {};
+      radiance.fill(take == 0 ? 0.25f : 0.75f);
+      const std::uint64_t kept = take == 0 ? kept_of_first : ~std::uint64_t{0};
+      TileSamples tile{.take = take, .takes = 2, .kept = kept, .smooth = kept};
+      for (int c = 0; c < 3; ++c) tile.radiance[c] = radiance.data(), tile.emitted[c] = emitted.data();
+      film.add({&tile, 1}, 0, 8);
+      CHECK(film.count(3, 4) == static_cast<std::uint32_t>(take));
+    }
+    return film;
+  };
+  const Film film = film_of_takes(~std::uint64_t{0});
+  CHECK(film.mean(3, 4) == Vec3d(0.5, 0.5, 0.5));
+  const DifferenceSums& sums = film.differences();
+  CHECK(sums.counts(0, 4, DifferenceSums::own)[3] == 2);
+  CHECK(static_cast<double>(sums.sums(0, 4, DifferenceSums::own, 0)[3]) * sums.radiance_unit() == 1);
+  // a take that is not finite is black
+  CHECK(film_of_takes(~(std::uint64_t{1} << (4 * 8 + 3))).mean(3, 4) == Vec3d(0.375, 0.375, 0.375));
 }
 
 TEST_CASE("pixels that see an edge have samples, but no part in differences") {
@@ -126,12 +151,13 @@ TEST_CASE("pixels that see an edge have samples, but no part in differences") {
   CHECK(film.count(5, 3) == 1);
   CHECK(film.mean(5, 3).x == 29);
   for (const Term term : {Term::own, Term::right, Term::below}) CHECK(sums.counts(0, 3, term)[5] == 0);
-  CHECK(sums.counts(0, 3, Term::own)[4] == 1);
+  CHECK(sums.counts(0, 3, Term::own)[4] == DifferenceSums::most_takes);
   CHECK(sums.counts(0, 3, Term::right)[4] == 0);
-  CHECK(sums.counts(0, 3, Term::right)[3] == 1);
+  CHECK(sums.counts(0, 3, Term::right)[3] == DifferenceSums::most_takes);
   CHECK(sums.counts(0, 2, Term::below)[5] == 0);
   CHECK(sums.sums(0, 2, Term::below, 0)[5] == 0);
-  CHECK(static_cast<double>(sums.sums(0, 2, Term::below, 0)[4]) * sums.radiance_unit() == 8);
+  CHECK(static_cast<double>(sums.sums(0, 2, Term::below, 0)[4]) * sums.radiance_unit() ==
+        8 * DifferenceSums::most_takes);
 }
 
 TEST_CASE("neighbours in a ragged tile have differences, wherever in it they are") {
@@ -167,6 +193,7 @@ TEST_CASE("neighbours in a ragged tile have differences, wherever in it they are
   film.add({&tile, 1}, 10, 24);
   const DifferenceSums& sums = film.differences();
   using Term = DifferenceSums::Term;
+  constexpr std::uint32_t takes = DifferenceSums::most_takes;  // that each sample counts as
   int differences = 0;
   for (int y = 4; y < 19; ++y)
     for (int x = 4; x < 19; ++x) {
@@ -181,12 +208,12 @@ TEST_CASE("neighbours in a ragged tile have differences, wherever in it they are
       const bool counts = here >= 0 && here != not_kept, smooth = counts && here != edge;
       CHECK(film.count(x, y) == (counts ? 1 : 0));
       CHECK(film.mean(x, y).y == (counts ? value(here) : 0));
-      CHECK(sums.counts(0, y, Term::own)[x] == (smooth ? 1 : 0));
-      CHECK(sum(Term::own) == (smooth ? value(here) : 0));
+      CHECK(sums.counts(0, y, Term::own)[x] == (smooth ? takes : 0));
+      CHECK(sum(Term::own) == (smooth ? takes * value(here) : 0));
       for (const auto& [term, there] : {std::pair(Term::right, at(1, 0)), {Term::below, at(0, 1)}}) {
         const bool pair = smooth && there >= 0 && there != edge;
-        CHECK(sums.counts(0, y, term)[x] == (pair ? 1 : 0));
-        CHECK(sum(term) == (pair ? value(there) - value(here) : 0));
+        CHECK(sums.counts(0, y, term)[x] == (pair ? takes : 0));
+        CHECK(sum(term) == (pair ? takes * (value(there) - value(here)) : 0));
         differences += pair ? 1 : 0;
       }
     }
@@ -200,6 +227,6 @@ TEST_CASE("radiance is summed to the nearest unit") {
     const auto before = film.differences().sums(0, 0, DifferenceSums::own, 2)[0];
     film.add_sample(0, [&](int, int) { return Vec3f(static_cast<float>(value * unit)); });
     CHECK(film.differences().sums(0, 0, DifferenceSums::own, 2)[0] - before ==
-          std::llround(double{static_cast<float>(value * unit)} / unit));
+          std::llround(DifferenceSums::most_takes * double{static_cast<float>(value * unit)} / unit));
   }
 }

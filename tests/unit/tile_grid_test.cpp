@@ -28,3 +28,14 @@ TEST_CASE("8 samples in a row have the edges of tiles in columns of their own, 6
       CHECK(grids.size() == 64);
     }
 }
+
+TEST_CASE("two takes of a sample have the edges of tiles in the middle of the other's") {
+  constexpr Window window{64, 64, 0, 0, 64, 64};
+  KernelOptions options{};
+  options.suffixes = tile_pixels;
+  for (options.seed = 1; options.seed < 20; ++options.seed) {
+    const TileGrid first(window, options, 0, 0), second(window, options, 0, 1);
+    CHECK((first.shift_x + tile_size / 2) % tile_size == second.shift_x);
+    CHECK((first.shift_y + tile_size / 2) % tile_size == second.shift_y);
+  }
+}
