@@ -143,11 +143,10 @@ Image decoded(const ImageFile& file, const ToneCurve& tone);
 
 /// Writes `image` in the format of the suffix, atomically. `display` shapes .ppm and .png only, but for
 /// bits16; there and in .hdr, NaN and negative components are stored as 0. `metadata` is stored in .png and
-/// .exr, `noise` and `passes` in .exr. The same bytes for any number of threads; 0: all that this process may
-/// use. Throws InputError.
+/// .exr, `noise` and `passes` in .exr. Throws InputError.
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display = {},
                  const Metadata& metadata = {}, const std::optional<Noise>& noise = {},
-                 const Passes& passes = {}, int threads = 1);
+                 const Passes& passes = {});
 
 /// NAME.variance.pfm of NAME.pfm.
 std::filesystem::path variance_file(const std::filesystem::path& pfm);

@@ -321,7 +321,7 @@ void write_film(const std::vector<std::filesystem::path>& files, const Film& fil
   const auto write = [&](const std::filesystem::path& file) {
     if (is_film_format(file)) return write_file(file, [&](std::ostream& out) { FilmFile::write(film, out); });
     if (!image) image = image_of(film, threads);
-    write_image(file, *image, display, metadata, noise_of(film), passes, threads);
+    write_image(file, *image, display, metadata, noise_of(film), passes);
   };
   std::optional<InputError> failed;
   for (const auto& file : files) {

@@ -7,7 +7,6 @@
 #include "castray/error.h"
 #include "castray/film.h"
 #include "core/files.h"
-#include "core/threads.h"
 #include "image/formats.h"
 #include "image/row_writer.h"
 
@@ -183,10 +182,8 @@ std::unique_ptr<RowWriter> row_writer(const std::filesystem::path& file, std::os
 }
 
 void write_image(const std::filesystem::path& file, const Image& image, const Display& display,
-                 const Metadata& metadata, const std::optional<Noise>& noise, const Passes& passes,
-                 int threads) {
-  if (threads <= 0) threads = available_threads();
-  const WrittenImage written{image.width, image.height, display, metadata, noise, passes, threads};
+                 const Metadata& metadata, const std::optional<Noise>& noise, const Passes& passes) {
+  const WrittenImage written{image.width, image.height, display, metadata, noise, passes};
   write_file(file, [&](std::ostream& out) {
     const auto writer = row_writer(file, out, written);
     writer->add(image);

@@ -26,7 +26,6 @@ struct WrittenImage {
   const Metadata& metadata;
   const std::optional<Noise>& noise;
   const Passes& passes;
-  int threads = 1;  ///< that encode at a time, at most
 };
 
 // One for each format. Stream and image outlive the writer, which writes its header at once.

@@ -1,12 +1,9 @@
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
 #include "castray/film.h"
 #include "castray/image.h"
-#include "castray/image_bands.h"
-#include "core/files.h"
 #include "temporary_folder.h"
 #include "test_image.h"
 
@@ -114,28 +111,6 @@ TEST_CASE("16 bits a value: PNG and PPM to half a step, EXR as half floats that 
   CHECK(std::isinf(back.at(1, 0).x));
   for (std::size_t i = 2; i < image.pixels.size(); ++i)
     for (int c = 0; c < 3; ++c) CHECK(back.pixels[i][c] == Approx(image.pixels[i][c]).epsilon(0x1p-11));
-}
-
-TEST_CASE("PNG files of several pieces hold all rows, and are the same whatever makes them") {
-  const TemporaryFolder folder;
-  const Image image = test_image(701, 260);
-  const Display display{{}, -2, GENERATE(false, true)};
-  const auto bytes = [&] { return read_file(folder / "a.png"); };
-  write_image(folder / "a.png", image, display);
-  const Image back = read_image(folder / "a.png").image, expected = displayed(image, display);
-  CHECK(worst(back, [&](int x, int y, int c) { return expected.at(x, y)[c]; }) <=
-        0.501f / (display.bits16 ? 65535 : 255));
-  const std::string once = bytes();
-  write_image(folder / "a.png", image, display, {}, {}, {}, 3);
-  CHECK(bytes() == once);
-  const auto rows = [&](int y0, int y1) {
-    Image some(image.width, y1 - y0);
-    std::copy_n(&image.at(0, y0), some.pixels.size(), some.pixels.begin());
-    return some;
-  };
-  write_image_in_bands({folder / "a.png"}, image.width, image.height, 56, rows, display,
-                       [] { return Metadata(); });
-  CHECK(bytes() == once);
 }
 
 TEST_CASE("metadata under names that OpenEXR uses itself is left out") {
