@@ -223,7 +223,7 @@ TEST_CASE("the terminal shows the reconstructed image") {
   CHECK(with_plain_ends(terminal.text()).find(with_plain_ends(expected)) != std::string::npos);
 }
 
-TEST_CASE("the preview follows the terminal's size; Ctrl-C gives the screen back and saves the image") {
+TEST_CASE("the preview follows the terminal's size, Ctrl-C gives the screen back and saves the image") {
   const TemporaryFolder folder;
   Terminal terminal(40, 12);
   CastrayProcess process(endless_render({"--preview", "terminal", "--threads", "1", "-o", "x.film"}),

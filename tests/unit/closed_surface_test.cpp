@@ -50,7 +50,7 @@ TEST_CASE("a mesh with a triangle turned round, or without one, is no closed sur
   CHECK(find(corners_of_tetrahedron, {tetrahedron.begin(), tetrahedron.end() - 1}).triangles == 0);
 }
 
-TEST_CASE("a sheet is a surface but for the triangles at its edge; of a small one nothing is") {
+TEST_CASE("a sheet is a surface but for the triangles at its edge, of a small one nothing is") {
   std::vector<Vec3f> positions, few;
   // of 100 x 100 squares: 4 x 100 edges, and 2 corners where one triangle has two of them
   const std::vector<Index3> large = sheet(100, positions);

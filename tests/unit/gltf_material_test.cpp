@@ -59,7 +59,7 @@ TEST_CASE("metallic-roughness: factors, and channels of their image") {
   CHECK(m.map(SurfaceParameter::kd).texture != m.map(SurfaceParameter::metallic).texture);  // sRGB
 }
 
-TEST_CASE("what is no metal is a coated base; no coat, no coat") {
+TEST_CASE("what is no metal is a coated base, no coat, no coat") {
   const Material plastic = material_of({{"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
   CHECK(plastic.type == MaterialType::microfacet);
   CHECK(plastic.ks.x == Approx(0.04));
@@ -109,7 +109,7 @@ TEST_CASE("alpha is coverage where it is blended, a threshold where it masks, an
   CHECK(coverage("MASK", 0.5) == 1);
 }
 
-TEST_CASE("emission: factor, strength, image; on both sides where the material has two") {
+TEST_CASE("emission: factor, strength, image, on both sides where the material has two") {
   GltfFile file;
   const int texture = file.add_texture(two_texels);
   const Material m =
@@ -294,7 +294,7 @@ TEST_CASE("KHR_texture_transform: scale and offset are the map's, a turn is the 
   CHECK(scene.uvs[0][1] == Approx(1).margin(1e-6));
 }
 
-TEST_CASE("normal maps have a strength; images may use the second texture coordinates") {
+TEST_CASE("normal maps have a strength, images may use the second texture coordinates") {
   GltfFile file;
   const int texture = file.add_texture(orm_texel);
   Json primitive = file.square(

@@ -40,7 +40,7 @@ TEST_CASE("float formats give back every bit, with metadata in EXR") {
   CHECK(read_image(folder / "a.exr").metadata == Metadata{{"scene", "box"}, {"spp", "64"}});
 }
 
-TEST_CASE("PFM is little-endian, bottom row first; the other byte order and grey are read") {
+TEST_CASE("PFM is little-endian, bottom row first, the other byte order and grey are read") {
   const TemporaryFolder folder;
   Image image(1, 2);
   image.at(0, 0) = {1, 2, 3};
@@ -95,7 +95,7 @@ TEST_CASE("every 8-bit value survives reading, decoding and writing") {
   for (int v = 0; v < 256; ++v) CHECK(std::lround(255 * back.at(v, 0).y) == v);
 }
 
-TEST_CASE("NaN is shown black, not white; infinities at the ends") {
+TEST_CASE("NaN is shown black, not white, infinities at the ends") {
   const Image image = [] {
     Image made(1, 1);
     made.at(0, 0) = {not_a_number, infinity, -infinity};

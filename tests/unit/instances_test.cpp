@@ -101,7 +101,7 @@ const std::string kept_twice =
 
 }  // namespace
 
-TEST_CASE("instances that are kept share triangles; their lights do not") {
+TEST_CASE("instances that are kept share triangles, their lights do not") {
   const Scene scene = load_with(object + kept_twice + R"(, "meshes": [ { "obj": "floor.obj" } ])");
   CHECK(scene.own_triangles() == 3);  // the floor's and two lamps'
   CHECK(scene.lights.size() == 2);

@@ -125,7 +125,7 @@ TEST_CASE("a tilted plane has its normal and, in each pixel, the depth of its mi
   }
 }
 
-TEST_CASE("the sky counts as black and as no object; depth and position are those of what is hit") {
+TEST_CASE("the sky counts as black and as no object, depth and position are those of what is hit") {
   // The plane covers x >= 0: half of the image, and half of no pixel but by the jitter within it.
   const Scene scene = plane(0, 0.0625f, 1, diffuse(grey));
   const Passes passes =

@@ -188,7 +188,7 @@ TEST_CASE("what a progress callback throws is thrown by render") {
       }
 }
 
-TEST_CASE("an absolute epsilon is the reference's, in the key too; what contradicts it is named") {
+TEST_CASE("an absolute epsilon is the reference's, in the key too, what contradicts it is named") {
   const Scene scene = standard_scene("cornell_box");
   RenderOptions options = options_of(Integrator::automatic);
   CHECK_THAT(render(scene, options).film.key, Contains("integrator=wavefront"));

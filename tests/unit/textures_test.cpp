@@ -54,7 +54,7 @@ Image plain_image(const Vec3f& color) {
 
 }  // namespace
 
-TEST_CASE("8-bit images stay bytes, others become floats; alpha is linear in both") {
+TEST_CASE("8-bit images stay bytes, others become floats, alpha is linear in both") {
   Raster raster;
   raster.width = 2;
   raster.height = 1;
@@ -75,7 +75,7 @@ TEST_CASE("8-bit images stay bytes, others become floats; alpha is linear in bot
   CHECK(texel(floats, 0)[3] == 0.5f);
 }
 
-TEST_CASE("each channel of a map is what it says; alpha is linear") {
+TEST_CASE("each channel of a map is what it says, alpha is linear") {
   const Texture t = rgba_bytes();
   TextureMap map{.texture = 0};
   const double u = 0.75, v = 0.5;  // the second texel's centre
