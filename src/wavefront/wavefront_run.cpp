@@ -93,6 +93,7 @@ void WavefrontRun::render_take(const Take& take, int row, int column, const Samp
   KernelOptions options = options_;
   if (differences_) options.seed = seed_of_half(options_.seed, take.sample);
   const std::uint64_t drawn = differences_ ? sample_of_half(take.sample) : take.sample;
+  if (take.of > 1) options.ragged = 0;  // grids half a tile apart hide each other's edges
   const TileGrid grid(window_, options, drawn, take.number);
   options.suffixes /= take.of;
   options.seed = seed_of_take(options.seed, take.number);
