@@ -212,7 +212,7 @@ TEST_CASE("a black image comes with its reason") {
 }
 
 TEST_CASE(
-    "strict reading makes the first warning the error; without it render tells what changes the picture") {
+    "strict reading makes the first warning the error, without it render tells what changes the picture") {
   const Mesh mesh("mtllib lost.mtl\nusemtl m\n" + square + "f 1 2\nf 1 2 3 4\n");
   const RunResult strict = mesh.render({"--strict"});
   CHECK(strict.exit_code == 2);

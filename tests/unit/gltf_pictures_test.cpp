@@ -227,7 +227,7 @@ TEST_CASE("cameras show what their angle or height spans") {
 }
 
 TEST_CASE(
-    "glass, thin or solid, gives back all of the light around it; a thin pane shows what is behind it") {
+    "glass, thin or solid, gives back all of the light around it, a thin pane shows what is behind it") {
   const auto glass = [](double thickness, double tint) -> Json {
     return {{"pbrMetallicRoughness", {{"baseColorFactor", {tint, tint, tint, 1}}, {"roughnessFactor", 0}}},
             {"extensions",
