@@ -38,9 +38,8 @@ void find_contradictions(int pairs, const double* difference, const double* mean
 }
 
 CASTRAY_VECTOR_CLONES
-void write_counts(int number, float factor, const std::uint32_t* first, const std::uint32_t* second,
-                  float* __restrict weight) {
-  for (int x = 0; x < number; ++x) weight[x] = factor * static_cast<float>(first[x] + second[x]);
+void write_counts(int number, float factor, const RowCounts& count, Coupling* __restrict weight) {
+  for (int x = 0; x < number; ++x) weight[x] = factor * static_cast<float>(count[x]);
 }
 
 CASTRAY_VECTOR_CLONES
@@ -188,10 +187,9 @@ void HalfStrip::find_weights(int other_half, PixelCouplings& weights) {
   }
 }
 
-void HalfStrip::count_weights(PixelCouplings& weights) {
+void HalfStrip::count_weights(PixelCouplings& weights) const {
   const auto write = [&](int y, Term term, float factor, int number, CouplingPlane& plane) {
-    write_counts(number, factor, sums_.counts(0, y, term), sums_.counts(1, y, term), weights_.data());
-    round_weights(number, weights_.data(), plane.row(y));
+    write_counts(number, factor, RowCounts(sums_, both_halves, y, term), plane.row(y));
   };
   for (int y = begin_; y < end_; ++y) {
     write(y, Term::own, 1, w_, weights.screen);

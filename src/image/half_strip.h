@@ -31,8 +31,8 @@ class HalfStrip {
     return below_contradictions_[channel].row(y - begin_);
   }
 
-  /// How far the other half should trust its own means and differences: one over the variances of these, as
-  /// estimated from this half, in luminance. 0 where one of the halves has none.
+  /// Of a half: how far the other half should trust its own means and differences: one over the variances of
+  /// these, as estimated from this half, in luminance. 0 where one of the halves has none.
   ///
   /// Estimates come from how smooth the image is. A mean and a difference say the same of two pixels, but for
   /// the samples in which these were in different tiles; so what they contradict each other tells the
@@ -40,7 +40,7 @@ class HalfStrip {
   void find_weights(int other_half, PixelCouplings& weights);
 
   /// Weights of both halves as one: their numbers of samples, times a constant that holds for all pixels.
-  void count_weights(PixelCouplings& weights);
+  void count_weights(PixelCouplings& weights) const;
 
  private:
   using Term = DifferenceSums::Term;

@@ -97,14 +97,11 @@ std::array<PixelEquations, parts> equations_of(const DifferenceSums& sums, const
 CASTRAY_VECTOR_CLONES
 void add_row(const Film& film, int part, const PixelPlanes& correction, float share, int y, Image& image) {
   const Window& window = film.window();
-  const bool both = part == both_halves;
-  const std::uint32_t *count = film.differences().counts(both ? 0 : part, y, Term::own),
-                      *second_count = film.differences().counts(1, y, Term::own);
+  const RowCounts count(film.differences(), part, y, Term::own);
   const float *red = correction[0].row(y), *green = correction[1].row(y), *blue = correction[2].row(y);
   for (int x = 0; x < film.width(); ++x) {
     const float all = static_cast<float>(film.count(window.x0 + x, window.y0 + y)),
-                smooth =
-                    static_cast<float>(count[x] + (both ? second_count[x] : 0)) / DifferenceSums::most_takes;
+                smooth = static_cast<float>(count[x]) / DifferenceSums::most_takes;
     const float weight = share * smooth / (all > 0 ? all : 1);  // of none there is none
     image.at(x, y) += Vec3f(red[x], green[x], blue[x]) * weight;
   }

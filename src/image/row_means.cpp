@@ -11,18 +11,16 @@ CASTRAY_VECTOR_CLONES
 void RowMeans::read(const DifferenceSums& sums, int half, int y, DifferenceSums::Term term) {
   const std::size_t width = per_sum.size();
   const bool both = half == both_halves;
-  const int first = both ? 0 : half;
-  const std::uint32_t *count = sums.counts(first, y, term), *second_count = sums.counts(1, y, term);
+  const RowCounts count(sums, half, y, term);
   const double unit = DifferenceSums::unit_over_scale;
   double* __restrict factor = per_sum.data();
   constexpr double none = std::numeric_limits<double>::infinity();  // a quotient of 0, without a branch
   for (std::size_t x = 0; x < width; ++x) {
-    const auto number =
-        static_cast<double>(static_cast<std::int32_t>(count[x] + (both ? second_count[x] : 0)));
+    const auto number = static_cast<double>(static_cast<std::int32_t>(count[static_cast<int>(x)]));
     factor[x] = unit / (number > 0 ? number : none);
   }
   for (int c = 0; c < 3; ++c) {
-    const std::int64_t *sum = sums.sums(first, y, term, c), *second_sum = sums.sums(1, y, term, c);
+    const std::int64_t *sum = sums.sums(both ? 0 : half, y, term, c), *second_sum = sums.sums(1, y, term, c);
     double* __restrict out = channel[c].data();
     for (std::size_t x = 0; x < width; ++x)
       out[x] = static_cast<double>(sum[x] + (both ? second_sum[x] : 0)) * factor[x];

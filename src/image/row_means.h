@@ -11,6 +11,18 @@ namespace castray {
 /// Stands for both halves of a film's samples where a half is asked for.
 inline constexpr int both_halves = DifferenceSums::halves;
 
+/// The numbers of takes of a row's pixels, or differences: those of a half, or of both.
+struct RowCounts {
+  RowCounts(const DifferenceSums& sums, int half, int y, DifferenceSums::Term term)
+      : first(sums.counts(half == both_halves ? 0 : half, y, term)),
+        second(sums.counts(1, y, term)),
+        second_counts(half == both_halves ? ~0u : 0u) {}
+  std::uint32_t operator[](int x) const { return first[x] + (second[x] & second_counts); }
+
+  const std::uint32_t *first, *second;
+  std::uint32_t second_counts;  ///< a mask
+};
+
 /// The means of a row's pixels, or differences, in three channels, over the film's scale: reconstruction
 /// squares them, which in other units might leave the range of floats.
 struct RowMeans {
